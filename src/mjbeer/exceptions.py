@@ -1,8 +1,7 @@
 """The errors that mjbeer raises on purpose, and its warnings. Catching `MjbeerError` catches all errors."""
 
 import warnings
-from collections.abc import Generator
-from contextlib import contextmanager
+from collections.abc import Callable
 from contextvars import ContextVar
 
 
@@ -58,25 +57,5 @@ class OutputError(MjbeerError):
     """An output file could not be written, or another command is writing to its folder."""
 
 
-_NOTES: ContextVar[list[str] | None] = ContextVar("notes", default=None)
-
-
-def warn_of_liquid(message: str, stacklevel: int) -> None:
-    """Give a `LiquidWarning`, with the `stacklevel` of the caller's, or add it to those that a block collects."""
-    if (notes := _NOTES.get()) is None:
-        warnings.warn(message, LiquidWarning, stacklevel=stacklevel + 1)
-    else:
-        notes.append(message)
-
-
-@contextmanager
-def collect_liquid_warnings() -> Generator[list[str]]:
-    """Yield a list that gets what liquids warn of in this block and this thread, instead of the user.
-
-    The filters of `warnings` belong to all threads at once: they would not do.
-    """
-    token = _NOTES.set(notes := [])
-    try:
-        yield notes
-    finally:
-        _NOTES.reset(token)
+# Gives a `LiquidWarning` unless a sweep collects them: the filters of `warnings`, of all threads at once, would not do.
+warn_of_liquid: ContextVar[Callable[..., None]] = ContextVar("warn_of_liquid", default=warnings.warn)

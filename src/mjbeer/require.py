@@ -1,5 +1,4 @@
-"""The domain of mjbeer, and checks of arguments: each returns the valid value, or raises a `ParameterError` that names
-what came and what is allowed."""
+"""The domain of mjbeer, and checks of arguments: each returns the valid value, or raises a `ParameterError`."""
 
 import math
 import numbers
@@ -15,7 +14,6 @@ import numpy as np
 from mjbeer.exceptions import AngleWarning, ParameterError
 
 T = TypeVar("T")
-Name = TypeVar("Name", bound=str | bool)
 
 # The domain: the smallest and the largest value.
 SIZE = 1e-3, 1e2  # of radius and length of a can [m]
@@ -52,17 +50,10 @@ def positive(name: str, value: Any, unit: str = "") -> float:
     return result
 
 
-def non_negative(name: str, value: Any, unit: str = "") -> float:
-    """Return `value` as a finite float of 0 or more."""
-    if not (result := number(name, value, unit)) >= 0:
-        raise _refused(f"{name} must be 0 or greater", unit, value)
-    return result
-
-
-def friction(value: Any) -> float:
-    """Return a coefficient of friction as a float of 0 or more, infinity included."""
-    if not (result := _float(value)) >= 0:
-        raise _refused("friction must be 0 or greater (infinity is allowed)", "", value)
+def non_negative(name: str, value: Any, unit: str = "", finite: bool = True) -> float:
+    """Return `value` as a float of 0 or more, which is finite unless infinity is allowed."""
+    if not (result := number(name, value, unit) if finite else _float(value)) >= 0:
+        raise _refused(f"{name} must be 0 or greater{'' if finite else ' (infinity is allowed)'}", unit, value)
     return result
 
 
@@ -91,15 +82,14 @@ def samples(name: str, value: Any, unit: str = "") -> np.ndarray:
 def times(name: str, value: Any, increasing: bool = False) -> np.ndarray:
     """Return times [s], none before 0, or a single one, as a new array of shape (samples,)."""
     array = samples(name, np.atleast_1d(value), "s").copy()
-    for index in np.flatnonzero(array < 0):
-        non_negative(f"{name}[{index}]", array[index], "s")
-    if increasing and (falls := np.flatnonzero(np.diff(array) <= 0)).size:
-        earlier, later = (format_value(each) for each in array[falls[0] : falls[0] + 2])
-        raise ParameterError(f"{name} must increase, but {name}[{falls[0] + 1}] is {later} s after {earlier} s")
+    non_negative(f"{name}[{array.argmin()}]", array.min(), "s")
+    if increasing and (steps := np.diff(array, prepend=-1)).min() <= 0:  # the first step is no fall
+        at = steps.argmin()
+        raise ParameterError(f"{name} must increase, but {name}[{at}] is {array[at]} s after {array[at - 1]} s")
     return array
 
 
-def choice(name: str, value: Any, allowed: Iterable[Name]) -> Name:
+def choice(name: str, value: Any, allowed: Iterable[T]) -> T:
     """Return `value` if it is one of the `allowed` names, or of True and False if those are."""
     for each in (names := tuple(allowed)):
         if isinstance(value, (str, bool, np.bool_)) and value == each:
@@ -121,11 +111,6 @@ def instance(name: str, value: Any, kind: type[T]) -> T:
     return value
 
 
-def set_fields(instance: object, **values: object) -> None:
-    """Set fields of a frozen dataclass to their checked values."""
-    vars(instance).update(values)
-
-
 def format_value(value: object) -> str:
     """Return a value as messages show it: in one short line, NumPy's numbers as plain ones."""
     text = _SHORT.repr(value.tolist() if isinstance(value, (np.generic, np.ndarray)) else value)
@@ -138,6 +123,5 @@ def _refused(what: str, unit: str, value: object) -> ParameterError:
 
 def _float(value: Any) -> float:
     """Return a number as a float, which may be infinite, and NaN for what is none, as True, "1" and [1.0] are not."""
-    if isinstance(value, np.ndarray) and value.ndim == 0:
-        value = value[()]
+    value = value[()] if isinstance(value, np.ndarray) else value  # a number, if the array has no dimensions
     return float(value) if isinstance(value, numbers.Real) and not isinstance(value, bool) else math.nan

@@ -1,25 +1,14 @@
-"""Files appear whole or not at all, whatever goes wrong in between; a study's folder has one command at a time."""
+"""Files appear whole or not at all, whatever goes wrong in between."""
 
 import errno
 import os
 import pathlib
-import signal
 from unittest.mock import Mock
 
 import pytest
 
-from mjbeer.cli.app import main
 from mjbeer.exceptions import OutputError
 from mjbeer.output import files
-from tests.support.processes import hear, interrupt, start
-
-HOLD = """
-import pathlib, sys, time
-from mjbeer.output import files
-with files.locked(pathlib.Path(sys.argv[1])):
-    print("locked", flush=True)
-    time.sleep(3600)
-"""
 
 
 def test_a_file_is_written_with_any_user_s_permissions(tmp_path: pathlib.Path) -> None:
@@ -100,23 +89,3 @@ def test_a_link_stays_and_what_is_read_only_or_a_device_is_not_replaced(
     with pytest.raises(OutputError, match="it is read-only"):
         files.write(target, "")
     assert target.read_text() == "replaced"
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("command", ["benchmark", "stability"])
-def test_a_second_study_in_a_folder_is_refused_until_the_first_is_gone(
-    command: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """Killed, the first cannot tidy up; what it leaves keeps nobody out."""
-    for study in ("benchmark.timing", "stability.stability_study"):
-        monkeypatch.setattr(f"mjbeer.studies.{study}.conduct", lambda *_: pytest.fail("it was begun"))
-    folder = tmp_path / "new"
-    with start([str(folder)], HOLD) as holder:
-        hear(holder, "locked")
-        assert main([command, "--output", str(folder)]) == 2
-        assert capsys.readouterr().err == f"mjbeer: cannot write to {folder}: another command is at work there\n"
-        assert os.listdir(folder) == [".lock"]
-        interrupt(holder, signal.SIGKILL)
-    for _ in range(2):
-        with files.locked(folder):
-            pass

@@ -2,7 +2,6 @@
 
 import pathlib
 import re
-from xml.etree import ElementTree
 
 import pytest
 
@@ -30,12 +29,3 @@ def test_a_title_and_a_scene_stand_above_the_axes(tmp_path: pathlib.Path) -> Non
     assert {"What it shows", "of which scene", "a line", "time [s]"} <= set(
         re.findall(r"<text[^>]*>([^<]*)</text>", svg)
     )
-
-
-def test_a_plot_whose_points_tell_a_text_is_xml(tmp_path: pathlib.Path) -> None:
-    with plots.chart(tmp_path / "plot") as (axes,):
-        for texts in (("one & two", "three"), ("four", "five")):
-            plots.add_tooltips(axes.plot([1, 2], [1, 2], "o-")[0], texts)
-    marks = "{http://www.w3.org/2000/svg}use"
-    told = [title.text for use in ElementTree.parse(tmp_path / "plot.svg").iter(marks) for title in use]
-    assert told == ["one & two", "three", "four", "five"]

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 from mjbeer import Scene, simulate
-from mjbeer.checks import Result
 from mjbeer.output import terminal
 from mjbeer.output.terminal import Table
+from mjbeer.paper.checks import Result
 from mjbeer.paper.claim import CONFIRMED, CORRECTED
 from mjbeer.studies.validation.validate import Validation
 from mjbeer.theory.trajectory import csv
@@ -56,12 +56,14 @@ def test_csv_gives_every_number_back_to_the_last_bit(scene: Scene) -> None:
 def test_a_program_reads_tabs_and_an_eye_lines(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    one, other = Table("One", ("name", "value"), [("phi", "[green]1.5[/]")]), Table("Other", ("name",), [("F",)])
+    one, other = Table("One", ("name", "value [rad]"), [("phi", "1.5")]), Table("Other", ("name",), [("F",)])
     terminal.show(one, other)
-    assert capsys.readouterr().out == "# One\nname\tvalue\nphi\t1.5\n\n# Other\nname\nF\n"
+    assert capsys.readouterr().out == "# One\nname\tvalue [rad]\nphi\t1.5\n\n# Other\nname\nF\n"
     monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
     terminal.show(one)
-    assert "│ phi  │ " in capsys.readouterr().out
+    shown = capsys.readouterr().out
+    assert "│ phi  │ " in shown
+    assert "value [rad]" in shown
 
 
 def test_json_has_versions_checks_and_a_verdict_that_one_decides() -> None:

@@ -12,10 +12,10 @@ import shlex
 import pytest
 
 from mjbeer import paper
-from mjbeer.checks import Result
 from mjbeer.cli.app import main, parse
 from mjbeer.drawing import opengl
 from mjbeer.drawing.film import MotionFilm
+from mjbeer.paper.checks import Result
 from mjbeer.paper.claim import CORRECTED, Bound, Claim, Witness
 from mjbeer.report import films, page
 from mjbeer.report.films import FILMS
@@ -141,12 +141,12 @@ def text() -> str:
 def test_nothing_comes_from_elsewhere_and_nothing_runs(text: str) -> None:
     """Links that a reader may follow are the only addresses; the policy forbids the rest, and all scripts."""
     read = Page(text)
-    taken = read.values("src") + read.values("poster") + read.values("href", "link", "image", "use")
+    taken = read.values("src") + read.values("poster") + read.values("href", "link")
     assert all(each.startswith(("data:", "#")) for each in taken)
     (policy,) = read.values("content", "meta")[:1]
     assert "default-src 'none'" in policy
     assert not re.search(r"\bhttps?:|\*|script", policy)
-    names, inside = read.values("id"), {each[1:] for each in read.values("href", "a", "use") if each[0] == "#"}
+    names, inside = read.values("id"), {each[1:] for each in read.values("href", "a") if each[0] == "#"}
     assert len(names) == len(set(names))
     assert set(read.values("id", "section")) <= inside <= set(names)
     assert all(read.values("alt", "img"))

@@ -11,20 +11,29 @@ from typing import Any
 
 import pytest
 
-from mjbeer.checks import Check, Result
+from mjbeer.cli.app import main
 from mjbeer.exceptions import OutputError, ParameterError
+from mjbeer.paper.checks import Check, Result
 from mjbeer.studies import study as studies
 from mjbeer.studies.study import Study
 from tests.support.processes import fall, hear, interrupt, start, where
 
 ALONE = """
 import os, pathlib, sys
-from mjbeer.checks import Check
+from mjbeer.paper.checks import Check
 from mjbeer.studies.study import run
 from tests.support.processes import work_and_sleep
 os.cpu_count = lambda: 2
 checks = [Check("t", str(place), work_and_sleep) for place in range(4)]
 run(checks, None, pathlib.Path(sys.argv[1]), "mjbeer test", {})
+"""
+
+HOLD = """
+import pathlib, sys, time
+from mjbeer.studies.study import locked
+with locked(pathlib.Path(sys.argv[1])):
+    print("locked", flush=True)
+    time.sleep(3600)
 """
 
 
@@ -122,3 +131,23 @@ def test_no_process_outlives_the_one_that_started_it(number: signal.Signals, tmp
             hear(process, "at work")
         _, err = interrupt(process, number, everybody=False)
     assert err.count("Traceback") <= 1  # its own
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("command", ["benchmark", "stability"])
+def test_a_second_study_in_a_folder_is_refused_until_the_first_is_gone(
+    command: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Killed, the first cannot tidy up; what it leaves keeps nobody out."""
+    for study in ("benchmark.timing", "stability.stability_study"):
+        monkeypatch.setattr(f"mjbeer.studies.{study}.conduct", lambda *_: pytest.fail("it was begun"))
+    folder = tmp_path / "new"
+    with start([str(folder)], HOLD) as holder:
+        hear(holder, "locked")
+        assert main([command, "--output", str(folder)]) == 2
+        assert capsys.readouterr().err == f"mjbeer: cannot write to {folder}: another command is at work there\n"
+        assert os.listdir(folder) == [".lock"]
+        interrupt(holder, signal.SIGKILL)
+    for _ in range(2):
+        with studies.locked(folder):
+            pass

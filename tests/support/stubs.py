@@ -6,12 +6,12 @@ from functools import partial
 import pytest
 
 from mjbeer import exact, paper, sliding
-from mjbeer.checks import Check
 from mjbeer.drawing import opengl, video
 from mjbeer.drawing.film import MotionFilm
 from mjbeer.exceptions import RenderingError
 from mjbeer.output import files, plots
 from mjbeer.paper import stories
+from mjbeer.paper.checks import Check
 from mjbeer.paper.stories import Story
 from mjbeer.report import page
 from mjbeer.studies.benchmark.points import SHIPPED, Benchmark

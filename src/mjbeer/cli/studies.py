@@ -15,6 +15,7 @@ from mjbeer.exceptions import ParameterError
 from mjbeer.output import files, terminal
 from mjbeer.output.terminal import STDERR, say, show
 from mjbeer.studies.benchmark.points import CASES
+from mjbeer.studies.study import locked
 
 _PLOTS = (".png", ".svg")
 _ENDINGS = (*_PLOTS, ".csv", ".nc")
@@ -82,7 +83,7 @@ def benchmark(given: Namespace) -> None:
     from mjbeer.studies.benchmark import benchmark_tables, timing
 
     names = [require.choice("scene", name, CASES) for name in given.scenes or CASES]
-    with files.locked(given.output):
+    with locked(given.output):
         study = timing.conduct(names, given.quick, STDERR)
         benchmark_tables.write(study, given.output)
     show(*benchmark_tables.tables(study))
@@ -93,7 +94,7 @@ def stability(given: Namespace) -> int:
     """Test stiff and extreme cases and the limits of stability, in eight minutes; exit status 1 if theory disagrees."""
     from mjbeer.studies.stability import stability_study as stability
 
-    with files.locked(given.output):
+    with locked(given.output):
         study = stability.conduct(given.output, given.quick, STDERR)
         stability.write(study, given.output)
     if given.json:

@@ -57,8 +57,7 @@ class Setting:
     def __post_init__(self) -> None:
         require.choice("rolling", self.rolling, ROLLINGS)
         require.choice("integrator", self.integrator, (*INTEGRATORS, *OWN))
-        require.set_fields(
-            self,
+        vars(self).update(
             timestep=require.within("timestep", self.timestep, *require.TIMESTEP, "s"),
             # MuJoCo raises a smaller one to this (mjMINMU), and says nothing
             friction=require.within("friction", self.friction, 1e-5, math.inf),

@@ -1,11 +1,13 @@
-"""What an interruption leaves: files that are whole or not there, a folder free for the next command, no process."""
+"""What an interruption leaves: files that are whole or not there, and no process."""
 
+import multiprocessing
 import os
 import pathlib
 import secrets
 import signal
 import threading
 from collections.abc import Generator
+from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from typing import Any
 
@@ -20,8 +22,7 @@ def atomic_write(path: str | os.PathLike[str]) -> Generator[pathlib.Path]:
     `path` is either the complete new file or the old one.
 
     Raises:
-      OutputError: if `path` cannot be written: a folder, a device, read-only, in a folder that does not exist, or on a
-        full disk.
+      OutputError: if `path` is a folder, a device or read-only, or its folder does not exist or its disk is full.
     """
     target = pathlib.Path(os.path.realpath(path))  # a link is kept, and the file that it points to is replaced
     with _output_errors(path, target.parent):
@@ -42,10 +43,7 @@ def atomic_write(path: str | os.PathLike[str]) -> Generator[pathlib.Path]:
 
 @contextmanager
 def _output_errors(path: str | os.PathLike[str], folder: pathlib.Path) -> Generator[None]:
-    """Raise what the system has against a path as an `OutputError`.
-
-    If its folder does not exist it says so: making it would hide that its name is misspelt.
-    """
+    """Raise what the system has against a path as an `OutputError`; a folder that may be misspelt is not made."""
     try:
         yield
     except OSError as error:
@@ -54,26 +52,6 @@ def _output_errors(path: str | os.PathLike[str], folder: pathlib.Path) -> Genera
             nearest = next(each for each in folder.parents if each.is_dir())
             reason = f"there is no folder {folder}; the nearest one that exists is {nearest}"
         raise OutputError(f"cannot write {path}: {reason}") from error
-
-
-@contextmanager
-def locked(folder: pathlib.Path) -> Generator[None]:
-    """Lock a folder while the block runs, so that no other command changes the study in it meanwhile.
-
-    The system releases the lock when the process ends, even if it is killed; the hidden file of the lock stays.
-
-    Raises:
-      OutputError: if another command holds the lock, or the folder cannot be created.
-    """
-    from filelock import FileLock, Timeout  # which only studies need, and which takes long to import
-
-    make_folder(folder)
-    try:
-        held = FileLock(folder / ".lock", blocking=False).acquire()
-    except Timeout:
-        raise OutputError(f"cannot write to {folder}: another command is at work there") from None
-    with held:
-        yield
 
 
 def write(path: str | os.PathLike[str], text: str) -> None:
@@ -102,9 +80,6 @@ def pool(most: int) -> Generator[Any]:
 
     At the end of the block, or when it is interrupted, the processes are ended.
     """
-    import multiprocessing
-    from concurrent.futures import ProcessPoolExecutor
-
     # Not forked: a copy of a process with several threads may hang, and a copy of OpenGL is of no use.
     # Threads for linear algebra would take the cores from other processes; NumPy asks when it is loaded.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -122,8 +97,6 @@ def pool(most: int) -> Generator[Any]:
 
 def _follow_parent() -> None:
     """Make this process leave interruptions to its parent, and end when the parent does, even if that is killed."""
-    import multiprocessing
-
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     parent: Any = multiprocessing.parent_process()
 

@@ -2,7 +2,6 @@
 
 import io
 import pathlib
-import re
 import textwrap
 from collections.abc import Generator, Sequence
 from contextlib import contextmanager
@@ -16,18 +15,16 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
-from matplotlib.lines import Line2D
 
 from mjbeer.output import files
 
 # M. Okabe and K. Ito's palette for colour-blind readers, without its yellow, which is hard to see on white.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 GREY = "#666666"  # of notes, and of lines that something is compared with: dark enough to be read on white
-# Lines: a motion by exact theory is wide and pale, so that the simulation's lies on it; then a motion by MuJoCo, an
-# equation as it is printed in the paper where that is wrong, what cannot happen, and a level or a time to compare with.
+# Lines: a motion by exact theory is wide and pale, so that the simulation's lies on it; then a motion by MuJoCo, what
+# cannot happen, and a level or a time to compare with.
 THEORY: dict[str, Any] = {"color": "#C4C4C4", "linewidth": 5, "zorder": 1.5}
 SIMULATED: dict[str, Any] = {"color": COLOURS[0]}
-PRINTED: dict[str, Any] = {"color": COLOURS[1], "linestyle": "--"}
 UNPHYSICAL: dict[str, Any] = {"color": "#8C8C8C", "linestyle": ":"}
 REFERENCE: dict[str, Any] = {"color": GREY, "linewidth": 0.8, "zorder": 1.2}
 
@@ -40,18 +37,14 @@ STYLE: Any = {
     "axes.titlelocation": "left",
     "axes.titlesize": 11,
     "font.sans-serif": ["DejaVu Sans", "Verdana"],  # where there is no DejaVu Sans, Verdana has the same widths
-    "font.size": 10.0,
     "grid.alpha": 0.3,
-    "legend.fontsize": 10,
     "legend.frameon": False,
     "svg.fonttype": "none",
     "svg.hashsalt": "mjbeer",  # with this and no date, equal plots are equal files
 }
 _TITLE: dict[str, Any] = {"fontsize": 13.5, "weight": "bold"}
 _SUBTITLE: dict[str, Any] = {"fontsize": 10.5, "color": GREY}
-_EDGE = 0.1  # distance of the title from the edge [inches]
 _LETTERS = 8.3  # letters of the title in an inch; the subtitle's are narrower
-_TOOLTIPS = "tooltips "  # begins the name of a line in an SVG whose points have tooltips
 
 
 @dataclass
@@ -90,20 +83,19 @@ def chart(
         figure = FigureCanvasSVG(Figure(figsize=(width, height), dpi=72)).figure
         used = 0.0  # height of title and subtitle at the top left [inches]
         for text, line, look in heads:
-            figure.text(_EDGE / width, 1 - (_EDGE / 2 + used) / height, text, ha="left", va="top", **look)
+            figure.text(0.1 / width, 1 - (0.05 + used) / height, text, ha="left", va="top", **look)
             used += line
         panels = list(figure.subplots(rows, columns, squeeze=False).flat)
         yield panels
         # Set out here and not by `savefig`, which would draw the whole plot for it first.
         ConstrainedLayoutEngine(rect=(0, 0, 1, 1 - used / height)).execute(figure)
-        named = {"Title": title, "Description": subtitle} if used else dict.fromkeys(("Creator", "Format", "Type"))
+        named = {"Date": None, "Title": title, "Description": subtitle}
         file = io.StringIO()
-        figure.savefig(file, format="svg", facecolor="white", dpi=150, metadata={"Date": None, **named})
-        svg = _with_tooltips(file.getvalue())
+        figure.savefig(file, format="svg", facecolor="white", dpi=150, metadata=named)
         if isinstance(path, Picture):
-            path.title, path.subtitle, path.svg = title, subtitle, svg[svg.index("<svg") :]
+            path.title, path.subtitle, path.svg = title, subtitle, file.getvalue()
         else:
-            files.write(path.with_name(path.name + ".svg"), svg)
+            files.write(path.with_name(path.name + ".svg"), file.getvalue())
 
 
 def note(axes: Axes, text: str, place: tuple[float, float], offset: tuple[float, float], **style: Any) -> None:
@@ -112,26 +104,9 @@ def note(axes: Axes, text: str, place: tuple[float, float], offset: tuple[float,
     axes.annotate(text, place, offset, textcoords="offset points", **style)
 
 
-def add_tooltips(line: Line2D, texts: Sequence[str]) -> None:
-    """Let each point of a line with markers tell a text of one line where a pointer rests on it, in the SVG."""
-    line.set_gid(_TOOLTIPS + "\n".join(texts))
-
-
 def name_below(axes: Sequence[Axes], columns: int, handles: Sequence[Artist] = ()) -> None:
     """Name what the axes show in one legend below the plot: their lines with a label, each name once, or `handles`."""
     if not handles:
         shown = [zip(*panel.get_legend_handles_labels(), strict=True) for panel in axes]
         handles = list({name: handle for pairs in shown for handle, name in pairs}.values())
     axes[0].figure.legend(handles=list(handles), loc="outside lower center", ncols=columns)
-
-
-def _with_tooltips(svg: str) -> str:
-    """Return an SVG in which each point of `add_tooltips` has its text as a title."""
-
-    def line(found: re.Match[str]) -> str:
-        told = found[2]
-        for text in found[1].split("\n"):
-            told = re.sub("(<use [^>]*)/>", rf"\1><title>{text}</title></use>", told, count=1)
-        return f"<g>{told}"
-
-    return re.sub(rf'(?s)<g id="{_TOOLTIPS}([^"]*)">(.*?)(?=<g id="{_TOOLTIPS}|$)', line, svg)

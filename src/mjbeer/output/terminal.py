@@ -10,7 +10,6 @@ import rich.table
 from rich.console import Console
 from rich.markup import escape
 from rich.progress import Progress
-from rich.text import Text
 
 from mjbeer.exceptions import OutputError
 
@@ -19,7 +18,7 @@ STDERR = Console(stderr=True)
 
 @dataclass(frozen=True)
 class Table:
-    """A title, the headings of the columns, and rows of text, whose rich markup takes effect on a console."""
+    """A title, the headings of the columns, and rows of text."""
 
     title: str
     columns: tuple[str, ...]
@@ -43,9 +42,8 @@ class Table:
         return "".join([heading, head, f"|{rule}|\n", *rows])
 
     def tabbed(self) -> str:
-        """Return the headings and the rows as lines with tabs between the columns, without rich's markup."""
-        rows = [[Text.from_markup(cell).plain for cell in row] for row in self.rows]
-        return "".join("\t".join(row) + "\n" for row in (self.columns, *rows))
+        """Return the headings and the rows as lines with tabs between the columns."""
+        return "".join("\t".join(row) + "\n" for row in (self.columns, *self.rows))
 
 
 def show(*tables: Table) -> None:
@@ -55,7 +53,7 @@ def show(*tables: Table) -> None:
     """
     if sys.stdout.isatty():
         with printing():
-            Console().print(*tables)
+            Console(markup=False).print(*tables)  # [rad] is a unit
     else:
         write("\n".join(f"# {table.title}\n{table.tabbed()}" for table in tables))
 

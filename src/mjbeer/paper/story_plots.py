@@ -3,13 +3,14 @@
 import math
 from collections.abc import Sequence
 from functools import partial
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from scipy.integrate import solve_ivp
 
 from mjbeer.model.setting import DOP853
-from mjbeer.output.plots import COLOURS, GREY, PRINTED, REFERENCE, SIMULATED, THEORY, UNPHYSICAL, name_below, note
+from mjbeer.output.plots import COLOURS, GREY, REFERENCE, SIMULATED, THEORY, UNPHYSICAL, name_below, note
 from mjbeer.paper import hopping, oscillation
 from mjbeer.paper.claim import Seen, value
 from mjbeer.paper.frozen import PRINTED_8
@@ -28,6 +29,8 @@ LOOPING = partial(simulate, sliding(), 0.5, 0.0, SLOW, integrator=DOP853)
 ROCKING = partial(simulate, frozen(), 2.0, 0.0, integrator=DOP853)
 LIFT_OFF = partial(simulate, frozen(), 1.0, math.pi, rolling="contact", timestep=2e-4, friction=FRICTION)
 PARTING = partial(LIFT_OFF, times=np.linspace(0.68, 1.0, 1601))
+_PRINTED: dict[str, Any] = {"color": COLOURS[1], "linestyle": "--"}
+"""The line of an equation as the paper prints it where that is wrong."""
 _JUMP = 3.0
 """Change of an angle [degrees] from one point to the next, beyond which a line breaks off: elsewhere it is below 1."""
 _TIME, _TILT = "time t [s]", "φ, the angle of the beer's surface to the incline"
@@ -63,7 +66,7 @@ def draw_hesitation(panels: Sequence[Axes]) -> None:
     (axes,) = panels
     axes.plot(times, 1e3 * (exact(scene, times, SWING).u - even), label="exact theory: b sin φ", **THEORY)
     axes.plot(times, 1e3 * (run.u - even), label="MuJoCo", **SIMULATED)
-    axes.plot(times, 1e3 * printed, label="eq. (25) as printed, but for a constant: twice in a swing", **PRINTED)
+    axes.plot(times, 1e3 * printed, label="eq. (25) as printed, but for a constant: twice in a swing", **_PRINTED)
     axes.axhline(0, **REFERENCE)
     axes.set(xlabel=_TIME, ylabel="u − ½ g sin α t² [mm]", title="Lead of the can over one that accelerates evenly")
     name_below([axes], 1)
@@ -79,7 +82,7 @@ def draw_looping(panels: Sequence[Axes]) -> None:
         once = value(oscillation.CORRECTED_28, turn) * np.sin(phase)
         corrected = np.degrees(once + turn.delta / 4 * np.sin(2 * phase))
         printed = np.degrees(value(oscillation.PRINTED_28, turn) * np.sin(phase))
-        axes.plot(x, printed, label="one ripple in a turn: (26) and (28) as printed", **PRINTED)
+        axes.plot(x, printed, label="one ripple in a turn: (26) and (28) as printed", **_PRINTED)
         axes.plot(x[::5], corrected[::5], "k.", label="and a second, twice in a turn: corrected")
         axes.plot(x, np.degrees(phi), label="MuJoCo", **SIMULATED)
         axes.set(ylabel="beer ahead, φ − Ωt [°]", title=f"{about}: Ω = {turn.Omega:.0f} rad/s in the mean")
@@ -109,10 +112,10 @@ def draw_rocking(panels: Sequence[Axes]) -> None:
     printed = footnote_8_as_printed(scene, times, run.phi0)
     angle.plot(times, np.degrees(truth), label="exact theory, eq. (52)", **THEORY)
     angle.plot(times, np.degrees(run.phi), label="MuJoCo", **SIMULATED)
-    angle.plot(times, np.degrees(printed), label="footnote 8 as printed", **PRINTED)
+    angle.plot(times, np.degrees(printed), label="footnote 8 as printed", **_PRINTED)
     angle.axhline(math.degrees(scene.equilibrium()), label="equilibrium, eq. (53)", **REFERENCE)
     error.plot(times, np.degrees(run.phi - truth), **SIMULATED)
-    error.plot(times, np.degrees(printed - truth), **PRINTED)
+    error.plot(times, np.degrees(printed - truth), **_PRINTED)
     angle.set(ylabel="φ [°]", title=_TILT)
     error.set(xlabel=_TIME, ylabel="φ less that of theory [°]", title="How far each is from exact theory")
     name_below([angle], 2)
@@ -128,7 +131,7 @@ def draw_roll_down(panels: Sequence[Axes]) -> None:
     even = scene.acceleration() / scene.can.radius * times**2 / 2
     angle.plot(times, np.degrees(even), "--", label="solid cylinder: g sin α t² / 3a", color=GREY, linewidth=1.2)
     printed = footnote_8_as_printed(scene, times, math.pi) - math.pi
-    angle.plot(times[rolls], np.degrees(printed[rolls]), label="footnote 8 as printed", **PRINTED)
+    angle.plot(times[rolls], np.degrees(printed[rolls]), label="footnote 8 as printed", **_PRINTED)
     weights = run.forces.normal / (scene.mass * scene.gravity)
     for axes, values in ((angle, np.degrees(run.phi - math.pi)), (normal, weights)):
         axes.plot(times[rolls], values[rolls], label="MuJoCo, can that rolls", **SIMULATED)

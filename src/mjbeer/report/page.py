@@ -93,7 +93,7 @@ def page(
     `not_drawn` says why films are missing, or is ""."""
     loader = PackageLoader("mjbeer.report", "web")
     environment = Environment(loader=loader, autoescape=True, undefined=StrictUndefined)
-    environment.filters |= {"mathml": mathml, "share": share, "marked": _marked, "data": _data, "inline": _inline}
+    environment.filters |= {"mathml": mathml, "share": share, "marked": _marked, "data": _data}
     benchmark, maps = Benchmark.load(SHIPPED), stability_maps.load()
     # The least and the largest run time of another tool over that of mjbeer's best setting, at equal error.
     spans = {name: benchmark_tables.span(benchmark, name) for name in ("MuJoCo RK4", "heyoka")}
@@ -158,12 +158,6 @@ def _data(content: bytes | str, kind: str) -> str:
     """Return a file of a kind as a data: URI."""
     content = content if isinstance(content, bytes) else content.encode()
     return f"data:{kind};base64,{base64.b64encode(content).decode()}"
-
-
-def _inline(plot: Picture) -> Markup:
-    """Return a plot as an element of the page, whose points then tell what they are; its names are its own."""
-    svg = re.sub(r'(id="|="#|url\(#)', rf"\1{plot.name}-", plot.svg)
-    return Markup(svg.replace("<svg ", f'<svg role="img" aria-label="{escape(plot.title)}" ', 1))
 
 
 def _marked(cell: str) -> Markup:

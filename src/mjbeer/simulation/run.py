@@ -184,7 +184,7 @@ class Run(Trajectory):
         It is infinite if rolling was possible to the end. With infinite friction only N > 0 has to hold; any other
         takes a run as long as this one.
         """
-        friction = require.friction(friction)
+        friction = require.non_negative("friction", friction, finite=False)
         if friction == self.record.friction:
             return self.record.rolling_ends_at
         simulator = Simulator(self.scene, self.setting)

@@ -9,17 +9,17 @@ import warnings
 from collections.abc import Callable, Generator, Iterable, Sequence
 from concurrent.futures import as_completed
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import closing
+from contextlib import closing, contextmanager
 from dataclasses import dataclass, field
 from importlib.metadata import distributions
 from typing import Any
 
 from rich.console import Console
 
-from mjbeer.checks import Check, Result, to_json
-from mjbeer.exceptions import ParameterError
+from mjbeer.exceptions import OutputError, ParameterError
 from mjbeer.output import files
 from mjbeer.output.terminal import progress_bar
+from mjbeer.paper.checks import Check, Result, to_json
 
 FAILED = {True: "", False: " **FAIL**"}
 """Marks what did not pass in a table."""
@@ -71,6 +71,26 @@ class Study:
     def save(self, path: pathlib.Path) -> None:
         """Write the study to a file, as lines of JSON: what it is of, and a line each result."""
         files.write(path, "".join(map(to_json, [self.about, *(result.as_json() for result in self.results)])))
+
+
+@contextmanager
+def locked(folder: pathlib.Path) -> Generator[None]:
+    """Lock a folder while the block runs, so that no other command changes the study in it meanwhile.
+
+    The system releases the lock when the process ends, even if it is killed; the hidden file of the lock stays.
+
+    Raises:
+      OutputError: if another command holds the lock, or the folder cannot be created.
+    """
+    from filelock import FileLock, Timeout  # which takes long to import, and which not every command needs
+
+    files.make_folder(folder)
+    try:
+        held = FileLock(folder / ".lock", blocking=False).acquire()
+    except Timeout:
+        raise OutputError(f"cannot write to {folder}: another command is at work there") from None
+    with held:
+        yield
 
 
 def run(

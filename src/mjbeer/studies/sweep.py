@@ -17,12 +17,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mjbeer import require
-from mjbeer.exceptions import LiquidWarning, ParameterError, collect_liquid_warnings
+from mjbeer.exceptions import LiquidWarning, ParameterError
 from mjbeer.model.setting import FRICTION, OWN, Integrator, Rolling, Setting
 from mjbeer.output import files
 from mjbeer.output.terminal import STDERR, progress_bar
 from mjbeer.simulation.run import Run
-from mjbeer.studies.sweep_runs import ALWAYS, NOT_YET, PERIOD, STATUSES, Work, measure, run_all
+from mjbeer.studies.sweep_runs import ALWAYS, NOT_YET, PERIOD, STATUSES, Work, collect_liquid_warnings, measure, run_all
 from mjbeer.theory.scene import Scene
 
 if TYPE_CHECKING:

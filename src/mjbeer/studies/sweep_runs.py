@@ -5,13 +5,14 @@ import pickle
 import time
 from collections.abc import Callable, Generator, Mapping
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ThreadPoolExecutor, wait
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from mjbeer import require
-from mjbeer.exceptions import DivergenceError, MjbeerError, ParameterError, ToleranceError, collect_liquid_warnings
+from mjbeer.exceptions import DivergenceError, MjbeerError, ParameterError, ToleranceError, warn_of_liquid
 from mjbeer.model.setting import Setting
 from mjbeer.simulation.run import Run, integrate
 from mjbeer.theory.scene import Scene
@@ -71,6 +72,17 @@ class Work:
             called = require.format_value(self.make)
             raise ParameterError(f"make must return a scene, got {called}, which returns {require.format_value(made)}")
         return made, *start
+
+
+@contextmanager
+def collect_liquid_warnings() -> Generator[list[str]]:
+    """Yield a list that gets what liquids warn of in this block and this thread, instead of the user."""
+    notes: list[str] = []
+    token = warn_of_liquid.set(lambda message, *_, **__: notes.append(message))
+    try:
+        yield notes
+    finally:
+        warn_of_liquid.reset(token)
 
 
 def measure(work: Work, scenes: list[dict[str, float]]) -> tuple[np.ndarray, list[str], float]:

@@ -36,8 +36,7 @@ class Can:
     """Moment of inertia I_can about the axis [kg m^2], eq. (31)."""
 
     def __post_init__(self) -> None:
-        require.set_fields(
-            self,
+        vars(self).update(
             radius=require.within("can radius", self.radius, *require.SIZE, "m"),
             length=require.within("can length", self.length, *require.SIZE, "m"),
             mass=require.within("can mass", self.mass, *require.MASS, "kg", zero=True),
@@ -107,8 +106,7 @@ class Load:
     """Filling height over diameter, h/2a of eq. (32), if the load is a circular segment; it decides how it is drawn."""
 
     def __post_init__(self) -> None:
-        require.set_fields(
-            self,
+        vars(self).update(
             mass=require.within("load mass", self.mass, *require.MASS, "kg"),
             offset=require.within("load offset", self.offset, 0, require.SIZE[1], "m"),
             inertia=require.non_negative("load inertia", self.inertia, "kg m^2"),
@@ -206,8 +204,7 @@ class Damping:
     """Slip rate [rad/s] from which a film all round the wall can hold a third of that liquid."""
 
     def __post_init__(self) -> None:
-        require.set_fields(
-            self,
+        vars(self).update(
             linear=require.non_negative("damping", self.linear, "N m s"),
             quadratic=require.non_negative("quadratic damping", self.quadratic, "N m s^2"),
             cubic=require.non_negative("cubic damping", self.cubic, "N m s^3"),

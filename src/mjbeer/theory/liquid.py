@@ -24,7 +24,7 @@ from typing import Literal, NamedTuple, get_args
 import numpy as np
 
 from mjbeer import require
-from mjbeer.exceptions import NoEquilibriumError, ParameterError, warn_of_liquid
+from mjbeer.exceptions import LiquidWarning, NoEquilibriumError, ParameterError, warn_of_liquid
 from mjbeer.theory.can import Can, Damping, segment
 from mjbeer.theory.scene import GRAVITY, INCLINE, Scene, remembers_call, sliding
 
@@ -119,7 +119,7 @@ def liquid(
         speed = 0.0
     spread = f"at its terminal speed of {speed:.2g} m/s" if centrifugal_ratio(scene, speed) > 1 else ""
     if reason := lump_warning(name, scene, abs(speed) / scene.can.radius, spread):
-        warn_of_liquid(reason, stacklevel=3)
+        warn_of_liquid.get()(reason, LiquidWarning, stacklevel=3)
     return scene
 
 

@@ -63,8 +63,7 @@ class Scene:
             )
         require.choice("attachment", self.attachment, ATTACHMENTS)
         damped = isinstance(self.damping, Damping)
-        require.set_fields(
-            self,
+        vars(self).update(
             incline=incline,
             gravity=require.within("gravity", self.gravity, *require.GRAVITY, "m/s^2", zero=True),
             drag=require.non_negative("drag", self.drag, "kg/m"),
@@ -304,7 +303,7 @@ def remembers_call(make: Callable[Parameters, Scene]) -> Callable[Parameters, Sc
     @functools.wraps(make)
     def remembering(*arguments: Parameters.args, **others: Parameters.kwargs) -> Scene:
         scene = make(*arguments, **others)
-        require.set_fields(scene, made_by=(remembering, inspect.signature(make).bind(*arguments, **others).arguments))
+        vars(scene).update(made_by=(remembering, inspect.signature(make).bind(*arguments, **others).arguments))
         return scene
 
     return remembering

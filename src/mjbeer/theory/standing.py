@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mjbeer import require
-from mjbeer.exceptions import ParameterError, warn_of_liquid
+from mjbeer.exceptions import LiquidWarning, ParameterError, warn_of_liquid
 from mjbeer.theory.can import Can
 from mjbeer.theory.liquid import LIQUIDS, NAMES
 from mjbeer.theory.scene import GRAVITY
@@ -66,8 +66,7 @@ class Standing:
         # In thinner films viscosity is everywhere.
         require.within("height of the liquid over the radius", fill * self.can.length / self.can.radius, 0.05, 50.0)
         ratio = self.damping_ratio
-        require.set_fields(
-            self,
+        vars(self).update(
             fill=fill,
             density=require.positive("density", self.density, "kg/m^3"),
             viscosity=require.non_negative("viscosity", self.viscosity, "m^2/s"),
@@ -197,7 +196,7 @@ def standing(
         layer = math.sqrt(2 * standing_can.viscosity / standing_can.frequencies(1)[0]) / can.radius
         if layer > 0.1:
             thick = f"{name} is too thick for the damping of thin layers: that on the wall has {layer:.3g} radii"
-            warn_of_liquid(f"{thick}, not 0.1 or less; give a damping_ratio", stacklevel=2)
+            warn_of_liquid.get()(f"{thick}, not 0.1 or less; give a damping_ratio", LiquidWarning, stacklevel=2)
     return standing_can
 
 

@@ -36,10 +36,10 @@ class Trajectory(Coordinates):
     def __post_init__(self) -> None:
         require.instance("scene", self.scene, Scene)
         phi0, phi_dot0 = require.start(self.phi0, self.phi_dot0)
-        require.set_fields(self, phi0=phi0, phi_dot0=phi_dot0)
+        vars(self).update(phi0=phi0, phi_dot0=phi_dot0)
         for name in Coordinates.__dataclass_fields__:
             samples = require.samples(name, getattr(self, name))
-            require.set_fields(self, **{name: samples})
+            vars(self)[name] = samples
             if len(samples) != len(self.time):
                 raise ParameterError(f"{name} must have as many entries as time, {len(self.time)}, got {len(samples)}")
 
@@ -101,7 +101,7 @@ class Trajectory(Coordinates):
         Raises:
           ParameterError: if `friction` is negative or no number.
         """
-        return Record.of(self, self.scene, require.friction(friction)).rolling_ends_at
+        return Record.of(self, self.scene, require.non_negative("friction", friction, finite=False)).rolling_ends_at
 
     def takeoff(self) -> float | None:
         """Return the angle of the load from the top [rad] when the can leaves the incline; None if it stays.

@@ -51,7 +51,7 @@ class Track:
     def __post_init__(self) -> None:
         for name, value in tuple(vars(self).items()):
             if name in ("time", "along") or value is not None:
-                require.set_fields(self, **{name: require.samples(name, value)})
+                vars(self)[name] = require.samples(name, value)
                 if (count := len(getattr(self, name))) != len(self.time):
                     raise ParameterError(f"{name} must have as many entries as time, {len(self.time)}, got {count}")
         if len(self.time) < _LEAST or (np.diff(self.time) <= 0).any() or not np.ptp(self.along) > 0:

@@ -11,7 +11,7 @@ import secrets
 import pytest
 
 import mjbeer
-from mjbeer.checks import Result
+from mjbeer.paper.checks import Result
 from mjbeer.studies import study
 from mjbeer.studies.stability import stability_study
 from mjbeer.studies.stability.judge import BOTH, DOUBTED, REFUSED, RIGHT, SILENT, THEORY, Outcome, Trial

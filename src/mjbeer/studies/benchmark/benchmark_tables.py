@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 
 from mjbeer.model.setting import DOP853, GAUSS_JACKSON, ROLLINGS
 from mjbeer.output import files
-from mjbeer.output.plots import COLOURS, add_tooltips, chart, name_below
+from mjbeer.output.plots import COLOURS, chart, name_below
 from mjbeer.output.terminal import Table
 from mjbeer.studies.benchmark import points
 from mjbeer.studies.benchmark.other_tools import WHOLE
@@ -170,8 +170,6 @@ def _evaluations(found: list[Point], error: float) -> str:
 def draw(study: Benchmark, path: pathlib.Path) -> None:
     """Draw the scenes of a study, each in a panel, and write them to `path` with .svg appended.
 
-    In the SVG a point has its setting, its error and its run time as a tooltip.
-
     Raises:
       OutputError: if a file cannot be written.
     """
@@ -195,16 +193,9 @@ def draw(study: Benchmark, path: pathlib.Path) -> None:
 
 
 def _draw(axes: Axes, found: Sequence[Point]) -> None:
-    """Draw the curves of a scene that have points, and give each point a tooltip."""
+    """Draw the curves of a scene that have points."""
     for curve, (name, colour, line) in _LINES.items():
         if shown := [point for point in found if point.curve == curve and point.error < _CEILING]:
             times, errors = [1e3 * point.time for point in shown], [max(point.error, _FLOOR) for point in shown]
             size = 9 if curve.model in USUAL else 5
-            (drawn,) = axes.plot(times, errors, line, label=name, color=colour, markersize=size, linewidth=1.3)
-            add_tooltips(drawn, [_tooltip(point, name) for point in shown])
-
-
-def _tooltip(point: Point, name: str) -> str:
-    """Return what a point is: its curve, timestep or tolerance, error and run time."""
-    value = f"{point.value:g}" if point.parameter == TOLERANCE else milliseconds(point.value)
-    return f"{name}, {point.parameter} {value}: error {point.error:.1e} rad, run time {milliseconds(point.time)}"
+            axes.plot(times, errors, line, label=name, color=colour, markersize=size, linewidth=1.3)

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 
 from mjbeer import require
-from mjbeer.exceptions import NoEquilibriumError, ParameterError, collect_liquid_warnings
+from mjbeer.exceptions import NoEquilibriumError, ParameterError
 from mjbeer.model.setting import DOP853, INTEGRATORS, ROLLINGS, supported
 from mjbeer.studies.stability.judge import Trial
 from mjbeer.theory.can import Can, Damping, Load
@@ -142,8 +142,7 @@ def _gravity(pick: Pick) -> Scene:
 def _liquid(pick: Pick) -> Scene:
     """Return a can with a real liquid in it."""
     can = pick.one(Can.massless, Can.sheet_metal)(pick([0.033, (0.02, 0.1)]))
-    with collect_liquid_warnings():
-        return liquid(pick.one(*NAMES), math.radians(pick(Even(-15, 15))), pick(Even(0.05, 0.95)), can)
+    return liquid(pick.one(*NAMES), math.radians(pick(Even(-15, 15))), pick(Even(0.05, 0.95)), can)
 
 
 def _metal(pick: Pick) -> Scene:

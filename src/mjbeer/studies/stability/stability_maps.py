@@ -20,7 +20,6 @@ from matplotlib.colors import ListedColormap
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from mjbeer.checks import Check, Result
 from mjbeer.exceptions import DivergenceError
 from mjbeer.integrators.dop853 import Dop853
 from mjbeer.model.build import build, specify
@@ -28,6 +27,7 @@ from mjbeer.model.joints import joint_addresses
 from mjbeer.model.setting import DOP853, INTEGRATORS, Integrator
 from mjbeer.output.plots import COLOURS, chart, name_below
 from mjbeer.output.terminal import Table
+from mjbeer.paper.checks import Check, Result
 from mjbeer.simulation.fixed_step import states_after
 from mjbeer.studies import predictions
 from mjbeer.studies.predictions import ACCURACY, GROWTH, spring

@@ -15,10 +15,10 @@ from typing import Any
 
 from rich.console import Console
 
-from mjbeer.checks import Check, Result
 from mjbeer.model.setting import supported
 from mjbeer.output import files
 from mjbeer.output.terminal import Table
+from mjbeer.paper.checks import Check, Result
 from mjbeer.studies import study as studies
 from mjbeer.studies.stability import stability_maps
 from mjbeer.studies.stability.judge import DOUBTED, JUDGES, REFUSED, RIGHT, SILENT, VERDICTS, judge

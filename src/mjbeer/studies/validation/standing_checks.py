@@ -8,11 +8,11 @@ import mujoco
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
-from mjbeer.checks import Check
 from mjbeer.model.build import build
 from mjbeer.model.free import attach, transverse_inertia
 from mjbeer.model.mujoco_library import quiet
 from mjbeer.model.setting import MujocoIntegrator
+from mjbeer.paper.checks import Check
 from mjbeer.theory.standing import SERIES, Reaction, Standing, standing
 
 SHARES = (0.2, 0.4, 0.6, 0.8, 1.2, 1.4, 2.0, 4.0)

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from rich.console import Console
 
 from mjbeer import paper
-from mjbeer.checks import Check, Result, to_json
 from mjbeer.output.terminal import Table, progress_bar
+from mjbeer.paper.checks import Check, Result, to_json
 from mjbeer.studies.study import FAILED, machine
 from mjbeer.studies.validation import motion_checks, standing_checks, track_checks
 

@@ -52,17 +52,13 @@ class Result:
 
 
 def json_values(content: Any) -> Any:
-    """Return content for JSON, in which infinity and NaN are None."""
-    if isinstance(content, dict):
-        return {name: json_values(value) for name, value in content.items()}
-    if isinstance(content, (list, tuple)):
-        return [json_values(value) for value in content]
-    return None if isinstance(content, float) and not math.isfinite(content) else content
+    """Return content as JSON has it, in which infinity and NaN are None."""
+    return json.loads(json.dumps(content), parse_constant=lambda _: None)
 
 
 def to_json(content: Any, indent: int | None = None) -> str:
     """Return content as JSON, in one line unless it is indented."""
-    return json.dumps(json_values(content), indent=indent, allow_nan=False) + "\n"
+    return json.dumps(json_values(content), indent=indent) + "\n"
 
 
 @dataclass(frozen=True)
