@@ -17,7 +17,6 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from mjbeer import LiquidWarning, liquid, paper
-from mjbeer.model.setting import DOP853
 from mjbeer.output.terminal import Table
 from mjbeer.paper.claim import APPROXIMATION, CONSEQUENCE, MISPRINT
 from mjbeer.studies import predictions
@@ -158,7 +157,7 @@ def stable_slip(integrator: str) -> float:
 
 def steps() -> str:
     """The largest stable timesteps that theory predicts."""
-    methods = ("Euler", "discrete", "RK4", DOP853)
+    methods = ("Euler", "discrete", "RK4", "DOP853")
 
     def spring(method: str) -> float:
         return math.inf if method == "discrete" else predictions.stable_limit(method)

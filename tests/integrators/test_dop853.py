@@ -4,11 +4,11 @@ import mujoco
 import numpy as np
 import pytest
 from numba import njit
-from scipy.integrate import DOP853
+from scipy import integrate
 
 from mjbeer import Can, Scene, exact, frozen, sliding
 from mjbeer.exceptions import DivergenceError
-from mjbeer.integrators.dop853 import Dop853
+from mjbeer.integrators.dop853 import DOP853
 from mjbeer.integrators.dynamics import Dynamics, derivative
 from mjbeer.model.build import build
 from mjbeer.model.joints import initial_state, to_coordinates
@@ -23,10 +23,10 @@ def test_fixed_step_is_scipy_s_step() -> None:
     def slope(_: float, y: np.ndarray) -> np.ndarray:
         return np.concatenate([y[2:], accelerations(scene, y[1], y[3], y[2])])
 
-    reference = DOP853(slope, 0.0, begin, 1.0, first_step=step, max_step=step, rtol=1e-2, atol=1e-2)
+    reference = integrate.DOP853(slope, 0.0, begin, 1.0, first_step=step, max_step=step, rtol=1e-2, atol=1e-2)
     reference.step()
     model = build(scene)
-    ours = Dop853(model).run(initial_state(model, scene, 1.0, 0.5), np.array([0.0, step / 3, step]), step)
+    ours = DOP853(model).run(initial_state(model, scene, 1.0, 0.5), np.array([0.0, step / 3, step]), step)
     # Twelve slopes of size 50 and 5 times a step of 0.02, each with the rounding of its forward dynamics.
     assert ours[2] == pytest.approx(reference.y[1::2], rel=1e-13)
     assert ours[1] == pytest.approx(reference.dense_output()(step / 3)[1::2], rel=1e-13)
@@ -39,7 +39,7 @@ def test_continuous_output_is_of_seventh_order() -> None:
     begin, steps, errors = initial_state(model, scene, 0.3, 0.0), 0.16 / 2.0 ** np.arange(4), []
     for step in steps:
         times = step * (np.arange(int(2 / step)) + 0.1)
-        found = to_coordinates(model, scene, Dop853(model).run(begin, times, float(step)), times).phi
+        found = to_coordinates(model, scene, DOP853(model).run(begin, times, float(step)), times).phi
         errors.append(np.abs(found - exact(scene, times, 0.3).phi).max())
     assert np.polyfit(np.log(steps), np.log(errors), 1)[0] == pytest.approx(7.5, abs=0.8)
 
@@ -53,7 +53,7 @@ def test_continuous_output_is_of_seventh_order() -> None:
 )
 def test_a_run_without_an_end_is_a_divergence(rate: float, end: float, setting: dict, message: str) -> None:
     with pytest.raises(DivergenceError, match=message):
-        Dop853(build(frozen())).run(np.array([1.0, rate]), np.array([0.0, end]), **setting)
+        DOP853(build(frozen())).run(np.array([1.0, rate]), np.array([0.0, end]), **setting)
 
 
 @njit

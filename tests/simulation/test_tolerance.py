@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from mjbeer import Can, Load, Scene, exact, frozen, liquid, pendulum, simulate, sliding
 from mjbeer.exceptions import ParameterError, ToleranceError
-from mjbeer.integrators.dop853 import Dop853
+from mjbeer.integrators.dop853 import DOP853
 from mjbeer.integrators.dynamics import Dynamics
 from mjbeer.model.build import build
 from mjbeer.model.joints import to_coordinates
@@ -301,14 +301,14 @@ def test_a_tolerance_near_rounding_is_kept_where_the_damping_has_corners() -> No
 
 def test_a_rotation_is_stepped_through_again_with_shorter_steps(monkeypatch: pytest.MonkeyPatch) -> None:
     """An even rotation takes steps of any length: two runs had 507 and 496 evaluations, and nearly the same error."""
-    runs, run = [], Dop853.run
+    runs, run = [], DOP853.run
 
-    def noted(method: Dop853, *arguments: object) -> np.ndarray:
+    def noted(method: DOP853, *arguments: object) -> np.ndarray:
         found = run(method, *arguments)
         runs.append(method.longest)
         return found
 
-    monkeypatch.setattr(Dop853, "run", noted)
+    monkeypatch.setattr(DOP853, "run", noted)
     simulate(frozen(can=METAL), 1.0, 1.0, 100.0, rolling="equality", tolerance=1e-3, times=[1.0])
     assert len(runs) >= 2
     assert all(later <= earlier / 1.2 for earlier, later in itertools.pairwise(runs))

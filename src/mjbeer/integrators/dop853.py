@@ -44,7 +44,7 @@ _ROUNDING = 32 * float(np.finfo(float).eps)
 """Size of a sum of rates that may be the rounding of its terms, over these."""
 
 
-class Dop853:
+class DOP853:
     """The DOP853 method around the forward dynamics of a model of slides and hinges, set up once and run often.
 
     A damping with the square of a rate, v |v|, has a corner where that rate passes zero. Steps of variable length end

@@ -12,7 +12,7 @@ from typing import NamedTuple, TypeAlias
 
 from mjbeer.exceptions import UnsupportedError
 from mjbeer.model.mjcf_file import Parameters
-from mjbeer.model.setting import DOP853, OWN, Setting
+from mjbeer.model.setting import OWN, Setting
 from mjbeer.theory.scene import Scene
 
 Structure: TypeAlias = tuple[Hashable, ...]
@@ -146,7 +146,7 @@ def stiffest(integrator: str, timestep: float, contact: bool = False) -> float:
     x = h/tau), and is given 0.5. RK4 is stable up to 2.7 and is given 2, which is stable with DOP853 too; "discrete"
     has no limit. A `contact` opens and closes: with less than a timestep RK4 chatters.
     """
-    if integrator not in ("RK4", "discrete", DOP853):
+    if integrator not in ("RK4", "discrete", "DOP853"):
         return 2 * timestep
     return timestep if contact else timestep / 2
 

@@ -17,11 +17,7 @@ ROLLINGS: tuple[Rolling, ...] = get_args(Rolling)
 """The ways in which a can is made to roll; see `Setting.rolling`."""
 INTEGRATORS: tuple[MujocoIntegrator, ...] = get_args(MujocoIntegrator)
 """The names of MuJoCo's own integrators, as in MJCF."""
-DOP853 = "DOP853"
-"""The name of mjbeer's Runge-Kutta method, of eighth order."""
-GAUSS_JACKSON = "GaussJackson"
-"""The name of mjbeer's multistep method, for motions without constraints and damping."""
-OWN = (DOP853, GAUSS_JACKSON)
+OWN = ("DOP853", "GaussJackson")
 """The names of mjbeer's own integrators, which step by themselves and have samples at any time."""
 FRICTION = 1.0
 """Default friction coefficient of a contact, which is MuJoCo's default too."""
@@ -64,10 +60,10 @@ class Setting:
             tolerance=None if self.tolerance is None else require.positive("tolerance", self.tolerance, "rad"),
             folder=mjcf_folder(self.mjcf),
         )
-        if self.integrator == GAUSS_JACKSON and self.rolling != "reduced":
+        if self.integrator == "GaussJackson" and self.rolling != "reduced":
             raise ParameterError(
-                f"{GAUSS_JACKSON} would be unstable with a constraint: rolling must be 'reduced' with it, got "
-                f"{self.rolling!r}; {DOP853} takes any"
+                "GaussJackson would be unstable with a constraint: rolling must be 'reduced' with it, got "
+                f"{self.rolling!r}; DOP853 takes any"
             )
         if self.tolerance is not None and self.rolling == "contact":
             raise ParameterError(

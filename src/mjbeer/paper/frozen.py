@@ -11,7 +11,6 @@ import numpy as np
 from scipy.optimize import brentq
 
 from mjbeer.model.build import build
-from mjbeer.model.setting import DOP853
 from mjbeer.paper.claim import Bound, Claim, Limit, Misprint, Seen, Witness
 from mjbeer.paper.witness import (
     CONTACT,
@@ -55,7 +54,7 @@ def equilibrium_53(scene: Scene) -> float:
 
 def _acceleration(scene: Scene, phi: float) -> float:
     """Return MuJoCo's phi_ddot [rad/s^2] of a can that is let go at `phi` [rad]."""
-    model = build(scene, "equality", integrator=DOP853)
+    model = build(scene, "equality", integrator="DOP853")
     data = mujoco.MjData(model)
     data.joint("slide").qpos[0], data.joint("roll").qpos[0] = scene.can.radius * phi, phi
     mujoco.mj_forward(model, data)
@@ -94,7 +93,7 @@ def _mean_acceleration(part: float = 1.0) -> Seen:
     It is that between the whole turns after 8 s and 16 s from phi = pi.
     """
     scene = footnote_scene(part)
-    run = simulate(scene, 16, math.pi, rolling="equality", integrator=DOP853)
+    run = simulate(scene, 16, math.pi, rolling="equality", integrator="DOP853")
     moments, angles = [], []
     for time in (8.0, 16.0):
         last = float(np.interp(time, run.time, run.phi))

@@ -5,7 +5,6 @@ from functools import cache, partial
 
 import numpy as np
 
-from mjbeer.model.setting import DOP853
 from mjbeer.paper.claim import APPROXIMATION, CONSEQUENCE, Bound, Claim, Limit, Misprint, Seen, Witness
 from mjbeer.paper.witness import EXACT, REDUCED, TENTH, loop, oscillate, simulated
 from mjbeer.simulation.simulate import simulate
@@ -33,7 +32,7 @@ def _ripple() -> Seen:
     """Return the amplitudes [m] of cos(k omega t) in u, without its steady acceleration, over one measured period."""
     period = 2 * math.pi / oscillate(sliding(), _HESITATION).omega
     times = period * np.arange(64) / 64
-    run = simulate(sliding(), period, _HESITATION, integrator=DOP853, times=times)
+    run = simulate(sliding(), period, _HESITATION, integrator="DOP853", times=times)
     ahead = run.u - run.scene.acceleration() * times**2 / 2
     return Seen.of(run.scene, phi_0=_HESITATION, ripple=np.fft.rfft(ahead).real * 2 / len(times))
 
@@ -45,7 +44,7 @@ def _furthest(rate: float) -> float:
     """
     form = sliding().oscillator
     spin = rate * math.sqrt(2 * form.drop(0.0, math.pi) / form.inertia(0.0))
-    run = simulate(sliding(), 0.55 if rate else 2.0, 0.0 if rate else _TOP, spin, integrator=DOP853)
+    run = simulate(sliding(), 0.55 if rate else 2.0, 0.0 if rate else _TOP, spin, integrator="DOP853")
     return float(np.abs(run.phi).max())
 
 
@@ -59,7 +58,7 @@ def _synthesis() -> Seen:
     """Return how far phi is ahead of Omega t over one turn, and the sum of its `waves` at Omega to 16 Omega [rad]."""
     turn = loop(sliding(), FAST)
     times = _PHASE / turn.Omega
-    run = simulate(sliding(), times[-1], 0.0, FAST, integrator=DOP853, timestep=times[1], times=times)
+    run = simulate(sliding(), times[-1], 0.0, FAST, integrator="DOP853", timestep=times[1], times=times)
     waves = sum(turn.ripple[k] * np.sin(k * _PHASE) for k in range(1, 17))
     return Seen.of(sliding(), ahead=run.phi - _PHASE, waves=waves)
 

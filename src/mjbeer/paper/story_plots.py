@@ -9,7 +9,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from scipy.integrate import solve_ivp
 
-from mjbeer.model.setting import DOP853
 from mjbeer.output.plots import COLOURS, GREY, REFERENCE, SIMULATED, THEORY, UNPHYSICAL, name_below, note
 from mjbeer.paper import hopping, oscillation
 from mjbeer.paper.claim import Seen, value
@@ -23,10 +22,10 @@ from mjbeer.theory.trajectory import Trajectory, exact
 
 SWING = math.radians(60)  # amplitude [rad] of the swing that shows the hesitation: so wide that the can slows down
 FRICTION = 1.0  # friction coefficient of the incline from which the can lifts off
-HESITATION = partial(simulate, sliding(), 0.8, SWING, integrator=DOP853, times=np.linspace(0, 0.8, 401))
-LOOPING = partial(simulate, sliding(), 0.5, 0.0, SLOW, integrator=DOP853)
+HESITATION = partial(simulate, sliding(), 0.8, SWING, integrator="DOP853", times=np.linspace(0, 0.8, 401))
+LOOPING = partial(simulate, sliding(), 0.5, 0.0, SLOW, integrator="DOP853")
 """The motion of a film: beer loops so slowly here that its can stays on the incline."""
-ROCKING = partial(simulate, frozen(), 2.0, 0.0, integrator=DOP853)
+ROCKING = partial(simulate, frozen(), 2.0, 0.0, integrator="DOP853")
 LIFT_OFF = partial(simulate, frozen(), 1.0, math.pi, rolling="contact", timestep=2e-4, friction=FRICTION)
 PARTING = partial(LIFT_OFF, times=np.linspace(0.68, 1.0, 1601))
 _PRINTED: dict[str, Any] = {"color": COLOURS[1], "linestyle": "--"}
@@ -38,7 +37,7 @@ _TIME, _TILT = "time t [s]", "φ, the angle of the beer's surface to the incline
 
 def let_go(degrees: float, duration: float = 1.0) -> Trajectory:
     """Return the motion of beer let go at an angle to the incline, for a `duration` [s]."""
-    return simulate(sliding(), duration, math.radians(degrees), integrator=DOP853, timestep=1e-3)
+    return simulate(sliding(), duration, math.radians(degrees), integrator="DOP853", timestep=1e-3)
 
 
 def draw_trivial(panels: Sequence[Axes]) -> None:
@@ -124,7 +123,7 @@ def draw_rocking(panels: Sequence[Axes]) -> None:
 def draw_roll_down(panels: Sequence[Axes]) -> None:
     """Draw the roll-down of frozen beer: how far it turns, and how hard the incline would have to push."""
     times = np.linspace(0, 1, 1001)
-    run = simulate(frozen(), times[-1], math.pi, integrator=DOP853, times=times)
+    run = simulate(frozen(), times[-1], math.pi, integrator="DOP853", times=times)
     scene, parts = run.scene, exact(run.scene, times, math.pi).rolls_until()
     rolls, pulled = times <= parts, times >= parts
     angle, normal = panels

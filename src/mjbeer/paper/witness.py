@@ -10,7 +10,7 @@ import numpy as np
 from mjbeer.model.build import build
 from mjbeer.model.joints import joint_addresses, to_states
 from mjbeer.model.mechanics import Mechanics
-from mjbeer.model.setting import DOP853, Integrator, Rolling, Setting, supported
+from mjbeer.model.setting import Integrator, Rolling, Setting, supported
 from mjbeer.paper.claim import Bound, Seen, Witness
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import Can, Load
@@ -35,7 +35,7 @@ def watch(
     phi_dot0: float = 0.0,
     rolling: Rolling = "reduced",
     samples: int = 101,
-    integrator: Integrator = DOP853,
+    integrator: Integrator = "DOP853",
     timestep: float = 5e-4,
 ) -> Seen:
     """Simulate a motion and return what MuJoCo computes at evenly spaced samples of it, in the coordinates of Fig. 3.
@@ -47,8 +47,8 @@ def watch(
     """
     times = np.linspace(0, duration, samples)
     run = simulate(scene, duration, phi0, phi_dot0, rolling, integrator, timestep, times=times)
-    model = build(scene, rolling, integrator=DOP853, timestep=timestep)
-    data, unit = mujoco.MjData(model), Mechanics.of(scene, Setting(rolling, DOP853, timestep)).unit
+    model = build(scene, rolling, integrator="DOP853", timestep=timestep)
+    data, unit = mujoco.MjData(model), Mechanics.of(scene, Setting(rolling, "DOP853", timestep)).unit
     names, can = joint_addresses(model), model.body("can").id
     carrier = model.body("load").id if "swing" in names else can
     axis, load = np.empty((2, samples, 3, 3))
@@ -92,7 +92,7 @@ def _point_motion(model: mujoco.MjModel, data: mujoco.MjData, point: np.ndarray,
 @cache
 def oscillate(scene: Scene, phi0: float, duration: float = 4.0, rolling: Rolling = "reduced") -> Seen:
     """Return the frequency `omega` [rad/s] of a swing that is simulated in 4000 steps, and its `rest` [rad]."""
-    run = simulate(scene, duration, phi0, rolling=rolling, integrator=DOP853, timestep=duration / 4000)
+    run = simulate(scene, duration, phi0, rolling=rolling, integrator="DOP853", timestep=duration / 4000)
     return Seen.of(scene, omega=run.frequency(), rest=scene.equilibrium())
 
 
@@ -134,10 +134,10 @@ def loop(scene: Scene, phi_dot0: float) -> Seen:
     """
     turn = 2 * math.pi / phi_dot0
     for _ in range(8):  # Newton's method for the time of a turn
-        end = simulate(scene, turn, 0.0, phi_dot0, integrator=DOP853, timestep=turn / 64, times=np.array([0, turn]))
+        end = simulate(scene, turn, 0.0, phi_dot0, integrator="DOP853", timestep=turn / 64, times=np.array([0, turn]))
         turn += (2 * math.pi - end.phi[-1]) / end.phi_dot[-1]
     times, rate = turn * np.arange(_SAMPLES) / _SAMPLES, 2 * math.pi / turn
-    run = simulate(scene, turn, 0.0, phi_dot0, integrator=DOP853, timestep=turn / 64, times=times)
+    run = simulate(scene, turn, 0.0, phi_dot0, integrator="DOP853", timestep=turn / 64, times=times)
     sway = sines(run.u - scene.acceleration() * times**2 / 2)
     return Seen.of(scene, Omega=rate, ripple=sines(run.phi - rate * times), sway=sway)
 

@@ -15,7 +15,7 @@ from mjbeer.model.build import compiled_model, write_numbers
 from mjbeer.model.joints import initial_state, joint_addresses, to_coordinates
 from mjbeer.model.mechanics import Mechanics, Structure
 from mjbeer.model.mjcf_file import compiled_views
-from mjbeer.model.setting import DOP853, OWN, Setting
+from mjbeer.model.setting import OWN, Setting
 from mjbeer.simulation.fixed_step import Recorder, Solution, states_after
 from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.record import ERROR, Record, failed_checks, rolling_failures
@@ -112,7 +112,7 @@ class Simulator:
             states = states_after(model, self.data, start, steps, parts, recorder)
             return Solution(states, recorder.record if recorder else None, None, integrator)
         # Imported only here: numba, which compiles them, takes longer to import than all else together.
-        from mjbeer.integrators.dop853 import Dop853
+        from mjbeer.integrators.dop853 import DOP853
         from mjbeer.integrators.dynamics import Dynamics
         from mjbeer.integrators.gauss_jackson import GaussJackson
         from mjbeer.simulation.tolerance import ToleranceLoop, even_at_most
@@ -123,8 +123,8 @@ class Simulator:
             return loop.run(start, times, tolerance, math.inf if friction is None else friction)
         if self._uneven:
             timestep *= _GOLDEN_SECTION
-        if integrator == DOP853:
-            states = Dop853(model, dynamics).run(start, times, timestep, observer=recorder)
+        if integrator == "DOP853":
+            states = DOP853(model, dynamics).run(start, times, timestep, observer=recorder)
         else:
             states = GaussJackson(model, dynamics).run(start, times, timestep, even_at_most(scene), recorder)
         return Solution(states, recorder.record if recorder else None, None, integrator)
@@ -207,7 +207,7 @@ class Run(Trajectory):
         """Return those reasons to doubt that the equations were solved that take no second run."""
         found = failed_checks(self.record, self.rolling)
         turn = self.record.largest_rate * (timestep := self.timestep or 0.0)
-        if turn > _MAX_TURN_PER_STEP and self.integrator != DOP853:
+        if turn > _MAX_TURN_PER_STEP and self.integrator != "DOP853":
             # Damping slows the load, and the slower it is, the less even it turns: down to the rate that is no trouble.
             rate = min(abs(self.phi_dot0), _MAX_TURN_PER_STEP / timestep) if self.scene.dissipates else self.phi_dot0
             if self.scene.oscillator.unevenness(self.phi0, rate) > ERROR:

@@ -6,13 +6,12 @@ import mujoco
 import numpy as np
 
 from mjbeer.exceptions import DivergenceError, ToleranceError, UnsupportedError
-from mjbeer.integrators.dop853 import Dop853
+from mjbeer.integrators.dop853 import DOP853
 from mjbeer.integrators.dynamics import Dynamics
 from mjbeer.integrators.gauss_jackson import GaussJackson
 from mjbeer.integrators.uneven_time import OwnTime, own_time
 from mjbeer.model.joints import joint_addresses
 from mjbeer.model.mujoco_library import LARGEST
-from mjbeer.model.setting import DOP853, GAUSS_JACKSON
 from mjbeer.simulation.fixed_step import Recorder, Solution
 from mjbeer.simulation.smooth_recorder import SmoothRecorder
 from mjbeer.theory.equations import relaxation_rate
@@ -180,7 +179,7 @@ class ToleranceLoop:
                     distance = max(_distance(self._angles, plain, compare, start), rounding * nudged)
                 error = max(safety * distance, drift)
                 if error <= tolerance:
-                    return Solution(fine, record, error, GAUSS_JACKSON)
+                    return Solution(fine, record, error, "GaussJackson")
                 timestep *= min(1 / _FINER, (tolerance / error) ** (1 / 12))  # its order is 13: on the safe side
         except DivergenceError:
             pass
@@ -188,7 +187,7 @@ class ToleranceLoop:
 
     def _by_dop853(self, start: np.ndarray, times: np.ndarray, tolerance: float, friction: float) -> Solution:
         """Return the solution by ever finer runs of DOP853."""
-        integrator, limit, longest = Dop853(self._model, self._dynamics), math.inf, math.inf
+        integrator, limit, longest = DOP853(self._model, self._dynamics), math.inf, math.inf
 
         def run(start: np.ndarray, local: float, recorder: Recorder | None = None) -> np.ndarray:
             nonlocal limit, longest
@@ -240,7 +239,7 @@ class ToleranceLoop:
             rounding = _ROUNDING_OVER_NUDGE * max(_distance(self._angles, each, fine, start) for each in beside)
             if rounding > tolerance:
                 raise _not_reached(tolerance, f"the rounding of the start grows to {rounding:.2g} rad")
-        return Solution(fine, recorder.record, max(error, drift, rounding), DOP853)
+        return Solution(fine, recorder.record, max(error, drift, rounding), "DOP853")
 
 
 def _not_reached(tolerance: float, reason: str) -> ToleranceError:

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 from matplotlib.axes import Axes
 
-from mjbeer.model.setting import DOP853, GAUSS_JACKSON, ROLLINGS
+from mjbeer.model.setting import ROLLINGS
 from mjbeer.output import files
 from mjbeer.output.plots import COLOURS, chart, name_below
 from mjbeer.output.terminal import Table
@@ -31,10 +31,10 @@ theory.
 """
 _DARK, _SCIPY, _HEYOKA = "#333333", COLOURS[4], COLOURS[3]
 _LINES: dict[Curve, tuple[str, str, str]] = {
-    Curve("reduced", DOP853): ("mjbeer's DOP853", COLOURS[0], "-o"),
-    Curve("reduced", GAUSS_JACKSON): ("mjbeer's Gauss-Jackson (multistep)", COLOURS[1], "-s"),
+    Curve("reduced", "DOP853"): ("mjbeer's DOP853", COLOURS[0], "-o"),
+    Curve("reduced", "GaussJackson"): ("mjbeer's Gauss-Jackson (multistep)", COLOURS[1], "-s"),
     Curve("reduced", CHOSEN, TOLERANCE): ("mjbeer to a tolerance", COLOURS[2], "-D"),
-    Curve("contact", DOP853): ("mjbeer's DOP853, in contact", COLOURS[5], ":o"),
+    Curve("contact", "DOP853"): ("mjbeer's DOP853, in contact", COLOURS[5], ":o"),
     Curve("reduced", "RK4"): ("MuJoCo's RK4", _DARK, "-^"),
     Curve("contact", "RK4"): ("MuJoCo's RK4, in contact", _DARK, ":^"),
     Curve("reduced", "Euler"): ("MuJoCo's Euler", _DARK, "-x"),

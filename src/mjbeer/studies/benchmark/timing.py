@@ -13,11 +13,11 @@ import numpy as np
 from rich.console import Console
 
 from mjbeer.exceptions import DivergenceError, MjbeerError
-from mjbeer.integrators.dop853 import Dop853
+from mjbeer.integrators.dop853 import DOP853
 from mjbeer.integrators.gauss_jackson import GaussJackson
 from mjbeer.model.build import specify
 from mjbeer.model.joints import initial_state, to_coordinates
-from mjbeer.model.setting import DOP853, GAUSS_JACKSON, INTEGRATORS, ROLLINGS, Setting, supported
+from mjbeer.model.setting import INTEGRATORS, ROLLINGS, Setting, supported
 from mjbeer.output.terminal import progress_bar
 from mjbeer.simulation.fixed_step import states_after
 from mjbeer.simulation.run import Simulator
@@ -94,10 +94,10 @@ def ladders(scene: Scene, quick: bool = False, missing: Container[str] = ()) -> 
     found: dict[Curve, tuple[float, ...]] = {}
     for rolling in (rolling for rolling in ROLLINGS if supported(scene, rolling)):
         found |= {Curve(rolling, integrator): steps for integrator in INTEGRATORS}
-        found[Curve(rolling, DOP853)] = large
+        found[Curve(rolling, "DOP853")] = large
         if rolling != "contact":  # which is too soft for a tolerance
             found[Curve(rolling, points.CHOSEN, points.TOLERANCE)] = tolerances
-    found[Curve("reduced", GAUSS_JACKSON)] = tuple(32e-3 / 2 ** (k / 4) for k in range(0, 29, every))
+    found[Curve("reduced", "GaussJackson")] = tuple(32e-3 / 2 ** (k / 4) for k in range(0, 29, every))
     found |= {Curve(name, "Euler"): (2e-3,) for name, rolling in points.USUAL.items() if supported(scene, rolling)}
     others = {name: tool for name, tool in OTHER_TOOLS.items() if name not in missing}
     return found | {Curve(name, "", points.TOLERANCE): tool.tolerances[::every] for name, tool in others.items()}
@@ -130,7 +130,7 @@ def _set_up(case: Case, point: Point) -> tuple[Callable[[], Any], Callable[[Any]
     scene, times, value = case.scene, points.TIMES, point.value
     if point.model in OTHER_TOOLS:
         return OTHER_TOOLS[point.model].set_up(scene, case.phi0, 0.0, times, value), lambda found: found
-    own: Dop853 | GaussJackson | None = None
+    own: DOP853 | GaussJackson | None = None
     if point.model in points.USUAL:
         model = usual_model(point.model, scene)
         begin = initial_state(model, scene, case.phi0, 0.0)
@@ -142,10 +142,10 @@ def _set_up(case: Case, point: Point) -> tuple[Callable[[], Any], Callable[[Any]
             given = {"integrator": point.method, "timestep": value}
         simulator = Simulator(scene, replace(Setting(), rolling=point.model, **given))
         model, begin = simulator.model, simulator.initial_state(case.phi0, 0.0)
-        if point.method == DOP853:
-            own = Dop853(model)
+        if point.method == "DOP853":
+            own = DOP853(model)
             solve = partial(own.run, begin, times, value)
-        elif point.method == GAUSS_JACKSON:
+        elif point.method == "GaussJackson":
             own = GaussJackson(model)
             solve = partial(own.run, begin, times, value, even_at_most(scene))
         else:

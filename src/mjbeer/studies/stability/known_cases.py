@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 from mjbeer.exceptions import NoEquilibriumError
-from mjbeer.model.setting import DOP853, ROLLINGS
+from mjbeer.model.setting import ROLLINGS
 from mjbeer.studies.stability.judge import Trial
 from mjbeer.theory.can import Can, Load
 from mjbeer.theory.record import ERROR
@@ -145,7 +145,7 @@ def _found() -> Iterator[KnownCase]:
     def case(name: str, why: str, setting: str, trial: Trial, within: float = math.inf) -> KnownCase:
         return KnownCase(name, why, (Variant(setting, trial, within),))
 
-    contact: dict[str, Any] = {"rolling": "contact", "integrator": DOP853}
+    contact: dict[str, Any] = {"rolling": "contact", "integrator": "DOP853"}
     why = "MuJoCo's solver stops once its cost falls by less than 1e-8 m^2/s^4: its tolerance has to scale with g^2"
     for name, scene in (("pendulum", pendulum(gravity=1e-3)), ("frozen", frozen(gravity=1e-3))):
         trial = Trial(scene, 1.0, 0.0, "contact", "RK4", math.sqrt(0.033 / 1e-3) / 100, steps=3000)

@@ -13,7 +13,7 @@ import numpy as np
 
 from mjbeer import require
 from mjbeer.exceptions import NoEquilibriumError, ParameterError
-from mjbeer.model.setting import DOP853, INTEGRATORS, ROLLINGS, supported
+from mjbeer.model.setting import INTEGRATORS, ROLLINGS, supported
 from mjbeer.studies.stability.judge import Trial
 from mjbeer.theory.can import Can, Damping, Load
 from mjbeer.theory.liquid import NAMES, liquid
@@ -260,7 +260,7 @@ def _setting(pick: Pick, scene: Scene, kind: str) -> dict[str, Any]:
     setting: dict[str, Any] = {"rolling": rolling, "friction": pick(friction)}
     if rolling != "contact" and pick.one(True, False, False, False):
         return setting | {"tolerance": pick((1e-12, 0.03))}
-    return setting | {"integrator": pick.one(*INTEGRATORS, "RK4", DOP853, DOP853)}
+    return setting | {"integrator": pick.one(*INTEGRATORS, "RK4", "DOP853", "DOP853")}
 
 
 def _samples(pick: Pick, steps: int, anywhere: bool, kind: str) -> dict[str, Any]:
@@ -299,7 +299,7 @@ class Region(NamedTuple):
         start = _start(pick, scene, pick.one(*self.starts))
         timestep, steps = _pace(pick, scene, start, pick.one(*self.paces))
         setting = _setting(pick, scene, self.setting)
-        setting |= _samples(pick, steps, setting.get("integrator") in (None, DOP853), pick.one(*self.samples))
+        setting |= _samples(pick, steps, setting.get("integrator") in (None, "DOP853"), pick.one(*self.samples))
         require.start(*start)
         require.within("timestep", timestep, *require.TIMESTEP)
         return Trial(scene, *start, timestep=timestep, steps=steps, **setting)

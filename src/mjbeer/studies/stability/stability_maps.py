@@ -21,10 +21,10 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from mjbeer.exceptions import DivergenceError
-from mjbeer.integrators.dop853 import Dop853
+from mjbeer.integrators.dop853 import DOP853
 from mjbeer.model.build import build, specify
 from mjbeer.model.joints import joint_addresses
-from mjbeer.model.setting import DOP853, INTEGRATORS, Integrator
+from mjbeer.model.setting import INTEGRATORS, Integrator
 from mjbeer.output.plots import COLOURS, chart, name_below
 from mjbeer.output.terminal import Table
 from mjbeer.paper.checks import Check, Result
@@ -56,10 +56,10 @@ _SEED = 1e-7
 time constant, and 1e-4 would already disturb the swing by 1 % at tau = 1 ms."""
 _STEPS = 1000
 """Least number of steps of a swing: within it, a growth of 2 % a step makes any initial violation visible."""
-_ALL: tuple[Integrator, ...] = (*INTEGRATORS, DOP853)
+_ALL: tuple[Integrator, ...] = (*INTEGRATORS, "DOP853")
 PLANS: tuple[tuple[str, Integrator], ...] = (
     *(("solref", name) for name in _ALL),
-    *(("direct", name) for name in _ALL if name not in ("implicit", DOP853)),
+    *(("direct", name) for name in _ALL if name not in ("implicit", "DOP853")),
     *(("gravity", name) for name in _ALL),
     *(("damping", name) for name in _ALL),
 )
@@ -151,8 +151,8 @@ class Swings:
         self._model.opt.timestep = timestep
         samples = np.arange(self._steps(timestep) + 1)
         try:
-            if self._integrator == DOP853:
-                states = Dop853(self._model).run(self._start, samples * timestep, timestep)
+            if self._integrator == "DOP853":
+                states = DOP853(self._model).run(self._start, samples * timestep, timestep)
             else:
                 states = states_after(self._model, mujoco.MjData(self._model), self._start, samples)
         except DivergenceError:
