@@ -257,16 +257,16 @@ def compare_uneven(run: Run) -> float:
 
 def integrate(scene: Scene, phi0: float, phi_dot0: float, setting: Setting, times: np.ndarray) -> Run:
     """Return the motion of a scene in a setting at increasing `times` [s], with the same errors as `simulate`."""
+    along, samples, checkpoints = times, slice(None), None
     if setting.tolerance is None:
         last = max(1, int(times[-1] / setting.timestep))
         checkpoints = setting.timestep * np.linspace(0, last, min(last, _COMPARED) + 1).astype(np.int64)
-    elif np.diff(times, prepend=0.0).max() > times[-1] / _PARTS:
+    elif (times[1:] - times[:-1]).max(initial=times[0]) > times[-1] / _PARTS:
         checkpoints = times[-1] * np.linspace(0, 1, _PARTS + 1)
-    else:
-        checkpoints = times[:0]
-    along = np.sort(np.concatenate([times, checkpoints[checkpoints <= times[-1]]]))
-    along = along[np.diff(along, prepend=-1.0) > 0]  # unlike union1d it does not import masked arrays
-    samples = np.searchsorted(along, times) if len(along) > len(times) else slice(None)
+    if checkpoints is not None:
+        along = np.sort(np.concatenate([times, checkpoints[checkpoints <= times[-1]]]))
+        along = along[np.diff(along, prepend=-1.0) > 0]  # unlike union1d it does not import masked arrays
+        samples = np.searchsorted(along, times)
     simulator = Simulator.kept(scene, setting)
     solution = simulator.solve(simulator.initial_state(phi0, phi_dot0), along, friction=math.inf)
     motion = to_coordinates(simulator.model, scene, solution.states, along)
