@@ -119,7 +119,7 @@ class GaussJackson:
             slide = float(start[0]) - own.share * math.sin(phi)
             speed = float(start[size]) - own.share * math.cos(phi) * phi_dot
         none, sums = (0.0, 0.0), ((slide, 0.0), (speed, 0.0))
-        work = *np.empty((2, COUNT + BLOCK)), np.empty(COUNT + 2), np.empty(2 * size), np.empty(2 * size)
+        work = *np.empty((2, COUNT + BLOCK)), np.empty(COUNT + 14), np.empty(2 * size), np.empty(2 * size)
         fixed = *self._dynamics.kernel, own, forcing, timestep, work, times, samples, kept
         place = 0.0, _MIDDLE, sample, (phi, phi_dot * pace, pace), (none, none, none, *sums)
         self.evaluations, _ = run_blocks("GaussJackson", _advance, fixed, place, limit, observer)

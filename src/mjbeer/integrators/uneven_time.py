@@ -175,7 +175,7 @@ def node(own, line, passed):
     return phi, line.step * (line.first - rate), dt_ds(own, phi)
 
 
-@inner
+@inline
 def whole(own, gains, end, line):
     """Return the time [s] that passes in the step that ends `LAG` steps before the last one."""
     passed = 0.0
@@ -193,8 +193,9 @@ def duration(own, line, share):
         x, place = line.back - share * own.points[k] - LAG - 0.5, 0.0
         for row in range(COUNT + 2):
             place = place * x + line.curve[row]
-        phi = line.step * line.step * (place + line.second - (LAG + 1.5 + x) * line.first)
-        passed += own.weights[k] * dt_ds(own, phi)
+        line.curve[COUNT + 2 + k] = line.second + place - (LAG + 1.5 + x) * line.first
+    for k in range(own.points.size):
+        passed += own.weights[k] * dt_ds(own, line.step * line.step * line.curve[COUNT + 2 + k])
     return line.step * share * passed
 
 
