@@ -113,21 +113,15 @@ def _corners(model: mujoco.MjModel) -> np.ndarray:
 
 
 @inline
-def _combine(weights, count, stages, out):
-    """Write the weighted sum of the first `count` stages to `out`, stage by stage, so that additions can overlap."""
+def _evaluate(pointers, views, tableau, state, step, stage, stages, out):
+    """Evaluate the derivative at a `stage` of a step from `state`, and leave the state there in `out`."""
     for i in range(out.size):
         out[i] = 0.0
-    for j in range(count):
-        weight = weights[j]
+    for j in range(stage):  # stage by stage, so that additions can overlap
+        weight = tableau[stage, j]
         if weight != 0.0:
             for i in range(out.size):
                 out[i] += weight * stages[j, i]
-
-
-@inline
-def _evaluate(pointers, views, tableau, state, step, stage, stages, out):
-    """Evaluate the derivative at a `stage` of a step from `state`, and leave the state there in `out`."""
-    _combine(tableau[stage], stage, stages, out)
     for i in range(out.size):
         out[i] = state[i] + step * out[i]
     derivative(pointers, views, out, stages[stage])
@@ -167,7 +161,7 @@ def _advance(pointers, views, tableau, state, new, work, stages, output, times, 
             status = NOT_FINITE
             break
         if not fixed:
-            error = _error(tableau, state, new, stages, step, tolerance, scale, work, output[0]) if finite else np.inf
+            error = _error(tableau, state, new, stages, step, tolerance, scale) if finite else np.inf
             if not error < 1.0:
                 step *= max(_SHRINK, _CAUTION * error ** (-1 / 8)) if finite else _SHRINK
                 if not step > 4e-16 * max(time, 1e-300) or step < 1e-200:
@@ -250,16 +244,17 @@ def _corner(corners, state, output, work):
 
 
 @inner
-def _error(tableau, state, new, stages, step, tolerance, scale, five, three):
+def _error(tableau, state, new, stages, step, tolerance, scale):
     """Return the estimated error of a step over the tolerated one."""
     small()
-    _combine(tableau[_ERRORS], stages.shape[0], stages, three)
-    _combine(tableau[_ERRORS + 1], stages.shape[0], stages, five)
     fifth = third = 0.0
     for i in range(state.size):
-        weight = tolerance * (scale[i] + max(abs(state[i]), abs(new[i])))
-        fifth += (five[i] / weight) ** 2
-        third += (three[i] / weight) ** 2
+        weight, five, three = tolerance * (scale[i] + max(abs(state[i]), abs(new[i]))), 0.0, 0.0
+        for j in range(len(stages)):
+            three += tableau[_ERRORS, j] * stages[j, i]
+            five += tableau[_ERRORS + 1, j] * stages[j, i]
+        fifth += (five / weight) ** 2
+        third += (three / weight) ** 2
     size = math.sqrt((fifth + 0.01 * third) * state.size)
     return abs(step) * fifth / size if size > 0 else 0.0
 
@@ -275,10 +270,10 @@ def _prepare(pointers, views, tableau, state, new, step, stages, work, output):
         output[0, i] = change
         output[1, i] = step * stages[0, i] - change
         output[2, i] = 2 * change - step * (stages[_END, i] + stages[0, i])
-    for k in range(3, output.shape[0]):
-        _combine(tableau[_OUTPUT - 3 + k], stages.shape[0], stages, output[k])
-        for i in range(state.size):
-            output[k, i] *= step
+        for k in range(3, len(output)):
+            output[k, i] = 0.0
+            for j in range(len(stages)):
+                output[k, i] += step * tableau[_OUTPUT - 3 + k, j] * stages[j, i]
     return _ERRORS - _END - 1
 
 
