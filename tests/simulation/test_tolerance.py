@@ -21,7 +21,7 @@ from mjbeer.simulation import tolerance as tolerances
 from mjbeer.simulation.run import Run
 from mjbeer.theory.can import Damping
 from mjbeer.theory.equations import accelerations, relaxation_rate
-from mjbeer.theory.trajectory import distance, phi_error
+from mjbeer.theory.trajectory import distance
 from tests.support.scenes import METAL, error, scenes
 
 pytestmark = pytest.mark.slow
@@ -58,7 +58,7 @@ def test_true_error_is_below_the_tolerance(
 @pytest.mark.parametrize("scene", [sliding(), frozen()])
 def test_the_estimate_bounds_the_true_error(scene: Scene, tolerance: float) -> None:
     run = simulate(scene, 2, 1.0, tolerance=tolerance)
-    assert phi_error(run, relative=True) <= run.error_estimate <= tolerance
+    assert error(run) <= run.error_estimate <= tolerance
     assert run.integrator == "GaussJackson"
     assert run.timestep is None
 
@@ -139,7 +139,7 @@ def test_beside_a_separatrix_a_tolerance_is_met_or_refused() -> None:
             except ToleranceError:
                 continue
             met += 1
-            assert phi_error(run, relative=True) <= tolerance, (scene, rolling, beside)
+            assert error(run) <= tolerance, (scene, rolling, beside)
     assert met >= len(BESIDE)
 
 
@@ -151,7 +151,7 @@ def test_cans_of_any_size_keep_to_the_tolerance(make: Callable[..., Scene], radi
     can = Can.sheet_metal(radius, 3.6 * radius, thickness=radius / 330)
     scene, slow = make(can=can), math.sqrt(radius / 9.81)
     run = simulate(scene, 30 * slow, 1.0, rolling=rolling, timestep=slow / 50, tolerance=1e-9)
-    assert phi_error(run, relative=True) < 1e-9
+    assert error(run) < 1e-9
 
 
 def test_two_runs_of_a_thousand_turns_do_not_agree_by_chance() -> None:

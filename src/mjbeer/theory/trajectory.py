@@ -103,14 +103,6 @@ class Trajectory(Coordinates):
         """
         return Record.of(self, self.scene, require.friction(friction)).rolling_ends_at
 
-    def takeoff(self) -> float | None:
-        """Return the angle of the load from the top [rad] when the can leaves the incline; None if it stays.
-
-        A lift of up to 1e-9 radii counts as touching: a soft contact sinks in by more than that.
-        """
-        above = self.lift > 1e-9 * self.scene.can.radius
-        return math.pi - float(self.phi[np.argmax(above)]) if above.any() else None
-
     @cached_property
     def solver_warnings(self) -> tuple[str, ...]:
         """Return the reasons to doubt that the equations of the model were solved, one sentence for each."""
@@ -157,10 +149,7 @@ class Trajectory(Coordinates):
         turns = _turning_times(time, rate, phi_ddot)
         if len(turns) < 3:
             raise MjbeerError(f"no frequency: a swing of 1e-5 rad turns {len(turns)} times here, and 3 are needed")
-        # Four samples a period of a small swing differ by 0.007 of the range of phi, three by 0.03, two by 0.2.
-        step = np.diff(time)
-        followed = step * (rate[:-1] + rate[1:]) / 2 - step**2 * np.diff(phi_ddot) / 12
-        if not np.abs(followed - np.diff(phi)).max() <= 0.05 * np.ptp(phi):
+        if not np.diff(time).max() * scene.oscillator.frequency() <= math.tau / 3:
             raise MjbeerError("no frequency: the samples are too far apart; at least three a period are needed")
         periods = (len(turns) - 1) // 2  # only whole periods, as the two halves of a swing differ on an incline
         return float(math.tau * periods / (turns[2 * periods] - turns[0]))
@@ -276,31 +265,18 @@ def _columns(motion: Trajectory) -> dict[str, np.ndarray]:
     }
 
 
-def angle_distance(angles: np.ndarray, truth: np.ndarray, start: float | None = None) -> float:
-    """Return the largest distance of `angles` from `truth` [rad].
-
-    With the angle at the `start` [rad], each distance is divided by the largest angle that `truth`, in order of time,
-    has turned from there so far, where that exceeds 1 rad: this is the error that a tolerance bounds.
-    """
-    apart = np.abs(angles - truth)
-    if start is not None:
-        apart = apart / np.maximum(1, np.maximum.accumulate(np.abs(truth - start)))
-    return float(np.max(apart))
-
-
 def distance(motion: Coordinates, truth: Coordinates, radius: float, start: tuple[float, float] | None = None) -> float:
-    """Return the larger of `angle_distance` for phi and for u/a [rad] from another motion at the same times.
+    """Return the largest distance of phi and of u/a [rad] from another motion at the same times.
 
-    `start` has phi [rad] and u [m] at time 0, from which the distance is made relative.
+    With phi [rad] and u [m] at the `start`, each distance is divided by the largest angle that `truth`, in order of
+    time, has turned from there so far, where that exceeds 1 rad: this is the error that a tolerance bounds.
     """
-    phi, rolled = (None, None) if start is None else (start[0], start[1] / radius)
-    return max(angle_distance(motion.phi, truth.phi, phi), angle_distance(motion.u / radius, truth.u / radius, rolled))
-
-
-def phi_error(trajectory: Trajectory, relative: bool = False) -> float:
-    """Return the largest distance of phi [rad] from the exact motion; if `relative`, as `angle_distance` says."""
-    truth = exact_motion(trajectory.scene, trajectory.time, trajectory.phi0, trajectory.phi_dot0)
-    return angle_distance(trajectory.phi, truth.phi, trajectory.phi0 if relative else None)
+    angles, right = (np.array([each.phi, each.u / radius]) for each in (motion, truth))
+    apart = np.abs(angles - right)
+    if start is not None:
+        turned = np.abs(right - np.array([[start[0]], [start[1] / radius]]))
+        apart /= np.maximum(1, np.maximum.accumulate(turned, axis=1))
+    return float(apart.max())
 
 
 def _turning_times(time: np.ndarray, rate: np.ndarray, change: np.ndarray) -> np.ndarray:
