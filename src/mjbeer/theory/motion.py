@@ -52,9 +52,8 @@ def period(oscillator: Oscillator, amplitude: float) -> float:
     """Return the period [s] of a swing of an `amplitude` [rad], with the errors of `Scene.period`."""
     rest = oscillator.equilibrium()
     low, high = (end - rest for end in oscillator.separatrix())
-    sign, potential = oscillator.sign, oscillator.potential
     if low < amplitude < high:
-        start = Start(oscillator, potential, sign, *potential.distances_by_rest(sign * amplitude), 0.0, 0.0)
+        start = Start.at(oscillator, rest + amplitude, 0.0)
         if start.still:
             return math.tau / oscillator.frequency()
         if start.energy_above_next_crest < 0:

@@ -67,13 +67,9 @@ class Potential:
         past_crest = math.remainder(_past_pi(phi) - self.crest_past_pi, math.tau)
         past_rest = math.remainder(reduced(phi) - self.rest, math.tau)
         if self.well > 0 and abs(past_rest) < abs(past_crest):
-            return self.distances_by_rest(past_rest)
+            past_crest = _past_pi(past_rest) + 2 * self.lean
+            return past_crest - (math.tau if past_crest >= math.pi else 0.0), past_rest
         return past_crest, past_crest + self.well - (0.0 if past_crest < 0 else math.tau)
-
-    def distances_by_rest(self, past_rest: float) -> tuple[float, float]:
-        """Return the `distances` by the angle [rad] past the equilibrium of a well."""
-        past_crest = _past_pi(past_rest) + 2 * self.lean
-        return past_crest - (math.tau if past_crest >= math.pi else 0.0), past_rest
 
     def below_next_crest(self, past_crest: float, past_rest: float) -> float:
         """Return by how much V at these `distances` is below the next crest downhill [J]."""
