@@ -20,7 +20,8 @@ from mjbeer.model.joints import to_coordinates
 from mjbeer.simulation import tolerance as tolerances
 from mjbeer.simulation.run import Run
 from mjbeer.theory.can import Damping
-from mjbeer.theory.equations import accelerations, relaxation_rate
+from mjbeer.theory.equations import accelerations
+from mjbeer.theory.scene import relaxation_rate
 from mjbeer.theory.trajectory import distance
 from tests.support.scenes import METAL, error, scenes
 
@@ -205,7 +206,7 @@ def test_stiffness_is_the_fast_root(phi: float) -> None:
         above, below = (accelerations(scene, phi, *(rates + sign * change)) for sign in (1, -1))
         columns.append([(up - down) / (2 * aside) for up, down in zip(above[::-1], below[::-1], strict=True)])
     root = -np.linalg.eigvals(np.array(columns).T).real.min()
-    assert relaxation_rate(scene, np.array(phi), rates[0], rates[1]) == pytest.approx(root, rel=1e-4)
+    assert relaxation_rate(scene, phi, rates[1] / METAL.radius - rates[0]) == pytest.approx(root, rel=1e-4)
 
 
 @pytest.mark.parametrize("damping", [1e-12, 1e-3])

@@ -7,13 +7,13 @@ from typing import NamedTuple
 import numpy as np
 
 from mjbeer import require
-from mjbeer.exceptions import ParameterError
 
 RADIUS = 0.033  # of a 12-oz can [m]; paper, after eq. (31)
 LENGTH = 0.12  # of a 12-oz can [m]; paper, after eq. (31)
 THICKNESS = 1e-4  # of the wall of an aluminium drinks can [m]; a common value, as the paper gives none
 ALUMINIUM = 2700.0  # density [kg/m^3]; handbook value
 BEER = 1000.0  # density [kg/m^3]: that of water, rounded, from which beer differs by about 1 %
+FILL = 1e-12, 1.0  # smallest and largest filling height of beer, over the diameter
 # Trigonometric polynomials of sixth degree over half a turn: 24 Gauss points would integrate them to rounding.
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(40)
 
@@ -43,11 +43,8 @@ class Can:
             mass=require.within("can mass", self.mass, *require.MASS, "kg", zero=True),
             inertia=require.non_negative("can inertia", self.inertia, "kg m^2"),
         )
-        if self.mass == 0 and self.inertia > 0:
-            raise ParameterError(
-                f"a can without mass has no inertia, got mass 0 kg and inertia {self.inertia!r} kg m^2"
-            )
-        require.within("can inertia", self.inertia, 0, require.RATIO * self.mass * self.radius**2, "kg m^2")
+        most = require.RATIO * self.mass * self.radius**2
+        require.within(f"can inertia with a mass of {self.mass:g} kg", self.inertia, 0, most, "kg m^2")
 
     @property
     def effective_mass(self) -> float:
@@ -112,7 +109,7 @@ class Load:
             mass=require.within("load mass", self.mass, *require.MASS, "kg"),
             offset=require.within("load offset", self.offset, 0, require.SIZE[1], "m"),
             inertia=require.non_negative("load inertia", self.inertia, "kg m^2"),
-            fill=None if self.fill is None else _checked_fill(self.fill),
+            fill=None if self.fill is None else require.within("fill", self.fill, *FILL),
         )
 
     @property
@@ -134,12 +131,12 @@ class Load:
         `fill` is h/2a of eq. (32), 0 < fill <= 1.
 
         Raises:
-          ParameterError: as `Load`, or if `fill` is outside (0, 1].
+          ParameterError: as `Load`.
         """
         radius = require.within("load radius", radius, *require.SIZE, "m")
         length = require.within("load length", length, *require.SIZE, "m")
         density = require.positive("load density", density, "kg/m^3")
-        fill = _checked_fill(fill)
+        fill = require.within("fill", fill, *FILL)
         shape = segment(fill)
         mass = density * length * radius**2 * shape.area
         return cls(mass, offset=radius * shape.offset, inertia=mass * radius**2 * shape.inertia, fill=fill)
@@ -178,10 +175,6 @@ def segment(fill: float) -> Segment:
     width = float(strip @ across**2) / (3 * total)
     inertia = width + float(strip @ height**2) / total
     return Segment(half_angle=beta, area=beta**3 * total, offset=offset, inertia=inertia, width=width)
-
-
-def _checked_fill(fill: float) -> float:
-    return require.within("fill", require.positive("fill", fill), 0, 1)
 
 
 @dataclass(frozen=True)

@@ -83,11 +83,11 @@ class Oscillator:
     """The coefficients of J and V in the formulas above."""
 
     base: float  # constant part of J [kg m^2]
-    chord: float  # coefficient of sin^2(phi/2) in J [kg m^2]
-    coupling: float  # coefficient of sin^2(phi) in J [kg m^2]
-    ramp: float  # mean torque downhill [N m]
     depth: float  # amplitude of the cosine in V [J]
     bottom: float  # angle at which the cosine in V has its minimum [rad]
+    chord: float = 0.0  # coefficient of sin^2(phi/2) in J [kg m^2]
+    coupling: float = 0.0  # coefficient of sin^2(phi) in J [kg m^2]
+    ramp: float = 0.0  # mean torque downhill [N m]
 
     @classmethod
     def sliding(cls, can: Can, load: Load, incline: float, gravity: float) -> "Oscillator":
@@ -98,9 +98,7 @@ class Oscillator:
         normal = gravity * math.cos(incline)
         return cls(
             base=load.inertia + load.moment * load.offset * can.effective_mass / total,
-            chord=0.0,
             coupling=load.moment * load.offset * load.mass / total,
-            ramp=0.0,
             depth=load.moment * math.hypot(normal, lag),
             bottom=math.atan2(-lag, normal),
         )
@@ -113,7 +111,6 @@ class Oscillator:
         return cls(
             base=inertia + can.inertia + can.mass * radius**2,
             chord=4 * load.mass * radius * offset,
-            coupling=0.0,
             ramp=(load.mass + can.mass) * gravity * radius * math.sin(incline),
             depth=load.moment * gravity,
             bottom=-incline,

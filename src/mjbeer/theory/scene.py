@@ -85,8 +85,7 @@ class Scene:
             )
         if self.dissipates:  # how fast damping and drag brake where the load resists least, phi = pi, at 1 rad/s
             limits = 1e-12, 1e9  # a slower decay cannot be observed
-            resists = float(self.frozen.inertia(math.pi)) / (a**2 * self.effective_mass * self.oscillator.base)
-            rate = float(self.damping_law.derivative(1.0)) * resists
+            rate = float(relaxation_rate(self, math.pi, 1.0))
             require.within("rate of damping", rate, *limits, "1/s", zero=True)
             require.within("rate of drag", 2 * self.drag * a / self.effective_mass, *limits, "1/s", zero=True)
 
@@ -296,6 +295,12 @@ class Scene:
         if self.attachment == "sliding" and not self.dissipates:
             return self.downhill_weight / self.effective_mass
         return self.downhill_weight / (self.effective_mass + self.load.axis_inertia / self.can.radius**2)
+
+
+def relaxation_rate(scene: Scene, phi: np.ndarray | float, slip: float) -> np.ndarray:
+    """Return the rate [1/s] at which damping brings can and load together, torque'(`slip` [rad/s]) J_f/(a^2 M J)."""
+    resists = scene.frozen.inertia(phi) / (scene.can.radius**2 * scene.effective_mass * scene.oscillator.inertia(phi))
+    return scene.damping_law.derivative(slip) * resists
 
 
 def remembers_call(make: Callable[Parameters, Scene]) -> Callable[Parameters, Scene]:

@@ -250,19 +250,10 @@ def csv(motion: Trajectory) -> str:
 
 def _columns(motion: Trajectory) -> dict[str, np.ndarray]:
     """Return the columns of a motion's table by their names, which end with the unit."""
-    return {
-        "time [s]": motion.time,
-        "u [m]": motion.u,
-        "phi [rad]": motion.phi,
-        "u_dot [m/s]": motion.u_dot,
-        "phi_dot [rad/s]": motion.phi_dot,
-        "roll [rad]": motion.roll,
-        "lift [m]": motion.lift,
-        "slip [m]": motion.slip,
-        "energy [J]": motion.energy,
-        "normal force needed [N]": motion.forces.normal,
-        "friction force needed [N]": motion.forces.friction,
-    }
+    units = {"time": "s", "u": "m", "phi": "rad", "u_dot": "m/s", "phi_dot": "rad/s"}
+    units |= {"roll": "rad", "lift": "m", "slip": "m", "energy": "J"}
+    columns = {f"{name} [{unit}]": getattr(motion, name) for name, unit in units.items()}
+    return columns | {f"{name} force needed [N]": force for name, force in vars(motion.forces).items()}
 
 
 def distance(motion: Coordinates, truth: Coordinates, radius: float, start: tuple[float, float] | None = None) -> float:
