@@ -263,13 +263,7 @@ class Scene:
         damping, drag = float(self.damping_law.derivative(slip)) / a**2, 2 * self.drag * a * abs(slip)
         cubic = mass * float(self.oscillator.inertia(tilt))
         square = damping * float(self.frozen.inertia(tilt)) + drag * self.load.axis_inertia
-        polynomial = np.array([cubic, square, mass * k + damping * a**2 * drag, k * (damping + drag)])
-        roots = np.roots(polynomial).astype(complex)
-        for _ in range(2):  # Newton's method, as an eigenvalue is rounded by the largest one
-            derivative = np.polyval(np.polyder(polynomial), roots)
-            correction = np.zeros_like(roots)
-            roots -= np.divide(np.polyval(polynomial, roots), derivative, out=correction, where=derivative != 0)
-        return np.sort_complex(roots)
+        return np.sort_complex(np.roots([cubic, square, mass * k + damping * a**2 * drag, k * (damping + drag)]))
 
     def slip_rate(self) -> float:
         """Return the mean slip rate of can and load [rad/s] with linear damping: m_t g a sin(alpha)/c, in any motion.
