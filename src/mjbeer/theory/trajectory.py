@@ -53,16 +53,6 @@ class Trajectory(Coordinates):
         """Return the name of the integrator, or "exact"."""
         return "exact"
 
-    @property
-    def timestep(self) -> float | None:
-        """Return the fixed timestep of the integrator [s]; None if there was none."""
-        return None
-
-    @property
-    def error_estimate(self) -> float | None:
-        """Return the estimated error of phi and u/a [rad]; None for a motion from theory."""
-        return None
-
     @cached_property
     def energy(self) -> np.ndarray:
         """Return the kinetic and potential energy of can and load together [J], at each sample."""
