@@ -73,7 +73,7 @@ REFUSED = [
     ("sheet thickness must be greater than 0", lambda: Can.sheet_metal(thickness=0.0)),
     ("load density must be greater than 0", lambda: sliding(density=0.0)),
     ("fill must be between 1e-12 and 1, got 1.0000000000000002", lambda: sliding(fill=math.nextafter(1, 2))),
-    ("incline must be between -pi/2 and pi/2 [rad] (90 degrees), got 1.57", lambda: sliding(math.pi / 2)),
+    ("incline must be between -1.5708 and 1.5708 [rad], got 1.57", lambda: sliding(math.pi / 2)),
     ("attachment must be one of 'sliding', 'frozen'; got 'glued'", lambda: Scene(Can(), BEER, attachment="glued")),
     ("can inertia with a mass of 0 kg must be between 0 and 0 [kg m^2], got 1e-05", lambda: Can(inertia=1e-5)),
     ("fill must be between 1e-12 and 1, got 0.0", lambda: sliding(fill=0.0)),

@@ -133,13 +133,11 @@ class Load:
         Raises:
           ParameterError: as `Load`.
         """
-        radius = require.within("load radius", radius, *require.SIZE, "m")
-        length = require.within("load length", length, *require.SIZE, "m")
-        density = require.positive("load density", density, "kg/m^3")
+        can, density = Can(radius, length), require.positive("load density", density, "kg/m^3")
         fill = require.within("fill", fill, *FILL)
         shape = segment(fill)
-        mass = density * length * radius**2 * shape.area
-        return cls(mass, offset=radius * shape.offset, inertia=mass * radius**2 * shape.inertia, fill=fill)
+        mass = density * can.length * can.radius**2 * shape.area
+        return cls(mass, offset=can.radius * shape.offset, inertia=mass * can.radius**2 * shape.inertia, fill=fill)
 
     @classmethod
     def point(cls, mass: float, offset: float) -> "Load":

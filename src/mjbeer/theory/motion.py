@@ -251,19 +251,15 @@ def _arc_to(start: Start, side: int) -> Arc:
     """Return the arc of a swing downhill (1) or uphill (-1) of the rest: from there, or the crest if that is nearer."""
     potential = start.potential
     well = potential.well if side > 0 else math.tau - potential.well
-
-    def height(distance: np.ndarray | float) -> np.ndarray:
-        return potential.below(-side * distance)
-
     if start.kinetic == 0 and side * start.angle_past_rest > 0:
         distance = min(abs(start.angle_past_rest), abs(start.angle_past_crest))
         by_rest = distance == abs(start.angle_past_rest)
     else:
-        energy = start.kinetic + height(side * start.angle_past_rest)
-        by_rest = height(well / 2) >= energy
+        energy = start.kinetic + potential.below(-start.angle_past_rest)
+        by_rest = potential.below(-side * well / 2) >= energy
         missing = -start.energy_above_next_crest + (0.0 if side > 0 else potential.drop_per_turn)
         wanted = energy if by_rest else missing
-        distance = root(lambda each: height(each) - wanted, 0.0, well / 2)
+        distance = root(lambda each: potential.below(-side * each) - wanted, 0.0, well / 2)
     if by_rest:
         return Arc(start, -side * distance, 0.0, upside_down=True)
     return Arc(start, -side * distance, -side * well, origin=side * well)
@@ -346,10 +342,22 @@ class TravelTime:
     def phase(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return psi at the times `time` [s], and in which passage that is; beyond both ends the motion stays there."""
         panel = np.clip(np.searchsorted(self._times, time, side="right") - 1, 0, len(self._series) - 1)
-        half, elapsed = self._halves[panel], time - self._times[panel]
-        guess = 2 * elapsed / (self._times[panel + 1] - self._times[panel]) - 1
-        x = _inverse_integral(self._series[panel], elapsed / half, guess)
-        return self._lows[panel] + half * x, panel // self._size
+        half, since = self._halves[panel], time - self._times[panel]
+        target, guess = since / half, 2 * since / (self._times[panel + 1] - self._times[panel]) - 1
+        values, integral = self._series[panel].T, (self._series[panel] @ _TO_INTEGRAL).T
+        low, high = -np.ones_like(time), np.ones_like(time)
+        x = np.clip(guess, -1, 1)
+        for _ in range(60):  # if only bisection helps, 53 use up the digits of a double
+            excess = chebyshev.chebval(x, integral, tensor=False) - target
+            low, high = np.where(excess <= 0, x, low), np.where(excess >= 0, x, high)
+            newton = x - excess / chebyshev.chebval(x, values, tensor=False)
+            # Newton's method leaves the bracket by rounding, or where dt/dpsi is steep: bisect there. A step of 1e-10
+            # leaves an error of its square.
+            converged = np.abs(newton - x) <= 1e-10
+            x = np.where(converged | ((newton >= low) & (newton <= high)), newton, (low + high) / 2)
+            if converged.all():
+                break
+        return self._lows[panel] + half * np.clip(1 + x, 0, 2), panel // self._size
 
 
 def _are_resolved(rates: np.ndarray, lows: np.ndarray, halves: np.ndarray) -> np.ndarray:
@@ -361,21 +369,3 @@ def _are_resolved(rates: np.ndarray, lows: np.ndarray, halves: np.ndarray) -> np
     stalled = tail >= 0.1 * coefficients[:, -12:-3].max(axis=1)
     noise = 16 * EPS * (1 + (np.abs(lows) + halves) / halves)
     return (tail <= 3e-15 * size) | (stalled & (tail <= noise * size))
-
-
-def _inverse_integral(series: np.ndarray, target: np.ndarray, guess: np.ndarray) -> np.ndarray:
-    """Return the x from 0 to 2 at which the integral of each positive series from -1 to x - 1 reaches its `target`."""
-    values, integral = series.T, (series @ _TO_INTEGRAL).T
-    low, high = -np.ones_like(target), np.ones_like(target)
-    x = np.clip(guess, -1, 1)
-    for _ in range(60):  # if only bisection helps, 53 use up the digits of a double
-        excess = chebyshev.chebval(x, integral, tensor=False) - target
-        low, high = np.where(excess <= 0, x, low), np.where(excess >= 0, x, high)
-        newton = x - excess / chebyshev.chebval(x, values, tensor=False)
-        # Newton's method leaves the bracket by rounding, or where dt/dpsi is steep: bisect there. A step of 1e-10
-        # leaves an error of its square.
-        converged = np.abs(newton - x) <= 1e-10
-        x = np.where(converged | ((newton >= low) & (newton <= high)), newton, (low + high) / 2)
-        if converged.all():
-            break
-    return np.clip(1 + x, 0, 2)

@@ -19,6 +19,7 @@ from mjbeer.theory.oscillator import Oscillator
 Parameters = ParamSpec("Parameters")
 Attachment = Literal["sliding", "frozen"]
 ATTACHMENTS: tuple[Attachment, ...] = get_args(Attachment)
+STEEPEST = math.nextafter(math.pi / 2, 0)  # incline, either way [rad]
 # What scenes and motions have unless told otherwise.
 INCLINE = math.radians(10)  # [rad], as in the paper's footnote 8
 DURATION = 2.0  # [s]
@@ -57,15 +58,11 @@ class Scene:
 
     def __post_init__(self) -> None:
         can, load = require.instance("can", self.can, Can), require.instance("load", self.load, Load)
-        if not abs(incline := require.number("incline", self.incline, "rad")) < math.pi / 2:
-            raise ParameterError(
-                f"incline must be between -pi/2 and pi/2 [rad] (90 degrees), got {require.format_value(self.incline)}"
-            )
         require.choice("attachment", self.attachment, ATTACHMENTS)
         damped = isinstance(self.damping, Damping)
         require.set_fields(
             self,
-            incline=incline,
+            incline=require.within("incline", self.incline, -STEEPEST, STEEPEST, "rad"),
             gravity=require.within("gravity", self.gravity, *require.GRAVITY, "m/s^2", zero=True),
             drag=require.non_negative("drag", self.drag, "kg/m"),
             damping=self.damping if damped else require.non_negative("damping", self.damping, "N m s"),

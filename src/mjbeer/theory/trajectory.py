@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from mjbeer import require
 from mjbeer.exceptions import MjbeerError, ParameterError
+from mjbeer.output import files
 from mjbeer.theory import damped_motion, equations, motion
 from mjbeer.theory.equations import Coordinates, Forces, accelerations, axis_motion, rolling_forces, select_samples
 from mjbeer.theory.liquid import lump_warning
@@ -175,18 +176,13 @@ class Trajectory(Coordinates):
         Raises:
           OutputError: if the file cannot be written.
         """
-        from mjbeer.output import files
-
         files.write(require.path(path), csv(self))
 
     def __repr__(self) -> str:
         """Return the motion in one line; whether it is trusted is not in it, as that may take a second run."""
-        count = len(self.time)
-        return (
-            f"<{type(self).__name__} {self.scene.attachment}, {self.rolling}, {self.integrator}: {count} "
-            f"sample{'s' * (count != 1)} to t = {self.time[-1]:.6g} s, phi = {self.phi[-1]:.6g} rad, "
-            f"u = {self.u[-1]:.6g} m>"
-        )
+        kind = f"{type(self).__name__} {self.scene.attachment}, {self.rolling}, {self.integrator}"
+        end = f"t = {self.time[-1]:.6g} s, phi = {self.phi[-1]:.6g} rad, u = {self.u[-1]:.6g} m"
+        return f"<{kind}: {len(self.time)} samples to {end}>"
 
 
 def exact(scene: Scene, time: ArrayLike, phi0: float, phi_dot0: float = 0.0) -> Trajectory:
