@@ -21,6 +21,8 @@ Name = TypeVar("Name", bound=str | bool)
 SIZE = 1e-3, 1e2  # of radius and length of a can [m]
 MASS = 1e-9, 1e4  # that is not 0 [kg]
 RATIO = 1e4  # of two masses, or of inertias compared with masses at the radius, either way
+INCLINE = -math.nextafter(math.pi / 2, 0), math.nextafter(math.pi / 2, 0)  # [rad]
+FILL = 1e-12, 1.0  # filling height of beer, over the diameter
 GRAVITY = 1e-3, 1e3  # that is not 0 [m/s^2]
 ANGLE = 1e4  # at the start, either way [rad]
 RATE = 1e6  # at the start, either way [rad/s]

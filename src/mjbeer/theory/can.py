@@ -13,7 +13,6 @@ LENGTH = 0.12  # of a 12-oz can [m]; paper, after eq. (31)
 THICKNESS = 1e-4  # of the wall of an aluminium drinks can [m]; a common value, as the paper gives none
 ALUMINIUM = 2700.0  # density [kg/m^3]; handbook value
 BEER = 1000.0  # density [kg/m^3]: that of water, rounded, from which beer differs by about 1 %
-FILL = 1e-12, 1.0  # smallest and largest filling height of beer, over the diameter
 # Trigonometric polynomials of sixth degree over half a turn: 24 Gauss points would integrate them to rounding.
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(40)
 
@@ -109,7 +108,7 @@ class Load:
             mass=require.within("load mass", self.mass, *require.MASS, "kg"),
             offset=require.within("load offset", self.offset, 0, require.SIZE[1], "m"),
             inertia=require.non_negative("load inertia", self.inertia, "kg m^2"),
-            fill=None if self.fill is None else require.within("fill", self.fill, *FILL),
+            fill=None if self.fill is None else require.within("fill", self.fill, *require.FILL),
         )
 
     @property
@@ -134,7 +133,7 @@ class Load:
           ParameterError: as `Load`.
         """
         can, density = Can(radius, length), require.positive("load density", density, "kg/m^3")
-        fill = require.within("fill", fill, *FILL)
+        fill = require.within("fill", fill, *require.FILL)
         shape = segment(fill)
         mass = density * can.length * can.radius**2 * shape.area
         return cls(mass, offset=can.radius * shape.offset, inertia=mass * can.radius**2 * shape.inertia, fill=fill)

@@ -9,9 +9,9 @@ at the equilibrium. A load that passes crests goes up in turns until it cannot p
 down in turns for ever. What goes the other way is watched in a mirror. A motion that rounding may change noticeably, as
 beside a separatrix, is refused.
 
-A path is cut into panels on which a Chebyshev series of fixed degree is dt/ds to rounding; the series are integrated
-exactly and inverted by Newton's method. (L. N. Trefethen, Approximation Theory and Approximation Practice, chapters 3
-and 19.)
+With psi = s or x, a path is cut into panels on which a Chebyshev series of fixed degree is dt/dpsi to rounding; they
+are integrated exactly, and inverted by Newton's method. (L. N. Trefethen, Approximation Theory and Approximation
+Practice, chapters 3 and 19.)
 """
 
 import math
@@ -311,23 +311,21 @@ class TravelTime:
         while len(lows):
             halves = (ends - lows) / 2
             middles, rates = lows + halves, rate(lows[:, None] + halves[:, None] * (1 + _NODES))
-            rates = rates.reshape(-1, *rates.shape[-2:])
+            rates = rates.reshape(-1, *rates.shape[-2:]).swapaxes(0, 1)  # (panels, passages, nodes)
             tried += len(lows)  # an ordinary path takes 10 panels, and one that hardly passes a barrier 100
             if tried > 5000 or not np.isfinite(rates).all() or not ((lows < middles) & (middles < ends)).all():
                 raise ToleranceError(
                     "the time along this motion is beyond doubles: sizes, masses, gravity or speeds are of too many "
                     "different orders of magnitude"
                 )
-            done = _are_resolved(rates[0], lows, halves)
-            panels.append((lows[done], halves[done], rates[:, done]))
+            done = _are_resolved(rates[:, 0], lows, halves)
+            panels.append((lows[done], halves[done], rates[done]))
             lows, middles, ends = lows[~done], middles[~done], ends[~done]
             lows, ends = np.concatenate([lows, middles]), np.concatenate([middles, ends])
-        starts, halves, rates = (
-            np.concatenate(parts, axis=-min(parts[0].ndim, 2)) for parts in zip(*panels, strict=True)
-        )
+        starts, halves, rates = (np.concatenate(parts) for parts in zip(*panels, strict=True))
         order = np.argsort(starts)
-        self._size, passages = len(order), len(rates)
-        self._series = rates[:, order].reshape(-1, len(_NODES)) @ _TO_SERIES
+        self._size, passages = len(order), rates.shape[1]
+        self._series = rates[order].swapaxes(0, 1).reshape(-1, len(_NODES)) @ _TO_SERIES
         self._lows, self._halves = np.tile(starts[order], passages), np.tile(halves[order], passages)
         self._times = np.concatenate([[0.0], np.cumsum(self._series @ _TO_INTEGRAL.sum(axis=1) * self._halves)])
         self.duration = float(self._times[-1])  # of all passages together [s]

@@ -19,7 +19,6 @@ from mjbeer.theory.oscillator import Oscillator
 Parameters = ParamSpec("Parameters")
 Attachment = Literal["sliding", "frozen"]
 ATTACHMENTS: tuple[Attachment, ...] = get_args(Attachment)
-STEEPEST = math.nextafter(math.pi / 2, 0)  # incline, either way [rad]
 # What scenes and motions have unless told otherwise.
 INCLINE = math.radians(10)  # [rad], as in the paper's footnote 8
 DURATION = 2.0  # [s]
@@ -62,7 +61,7 @@ class Scene:
         damped = isinstance(self.damping, Damping)
         require.set_fields(
             self,
-            incline=require.within("incline", self.incline, -STEEPEST, STEEPEST, "rad"),
+            incline=require.within("incline", self.incline, *require.INCLINE, "rad"),
             gravity=require.within("gravity", self.gravity, *require.GRAVITY, "m/s^2", zero=True),
             drag=require.non_negative("drag", self.drag, "kg/m"),
             damping=self.damping if damped else require.non_negative("damping", self.damping, "N m s"),
