@@ -103,7 +103,12 @@ class Start:
     @cached_property
     def energy_above_next_crest(self) -> float:
         """Return E - V at the next crest downhill [J]."""
-        return self.kinetic - self.potential.below_next_crest(self.angle_past_crest, self.angle_past_rest)
+        if self.angle_past_crest < 0:
+            return self.energy_above_crest
+        past_next = self.angle_past_rest - self.potential.well
+        if abs(past_next) <= self.angle_past_crest:
+            return self.kinetic - float(self.potential.below(past_next))
+        return self.energy_above_crest + self.potential.drop_per_turn
 
     @property
     def swings(self) -> bool:

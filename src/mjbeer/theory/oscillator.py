@@ -71,12 +71,6 @@ class Potential:
             return past_crest - (math.tau if past_crest >= math.pi else 0.0), past_rest
         return past_crest, past_crest + self.well - (0.0 if past_crest < 0 else math.tau)
 
-    def below_next_crest(self, past_crest: float, past_rest: float) -> float:
-        """Return by how much V at these `distances` is below the next crest downhill [J]."""
-        ahead = past_crest if past_crest < 0 else past_rest - self.well
-        by_next = abs(ahead) <= abs(past_crest)
-        return float(self.below(ahead)) if by_next else float(self.below(past_crest)) - self.drop_per_turn
-
 
 @dataclass(frozen=True)
 class Oscillator:

@@ -140,6 +140,7 @@ class Trajectory(Coordinates):
         turns = _turning_times(time, rate, phi_ddot)
         if len(turns) < 3:
             raise MjbeerError(f"no frequency: a swing of 1e-5 rad turns {len(turns)} times here, and 3 are needed")
+        # A small swing without damping is the fastest one.
         if not np.diff(time).max() * scene.oscillator.frequency() <= math.tau / 3:
             raise MjbeerError("no frequency: the samples are too far apart; at least three a period are needed")
         periods = (len(turns) - 1) // 2  # only whole periods, as the two halves of a swing differ on an incline
