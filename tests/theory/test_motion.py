@@ -10,8 +10,7 @@ import pytest
 
 from mjbeer import Can, Load, Scene, exact, frozen, hoop, pendulum, sliding
 from mjbeer.exceptions import NoLibrationError, ParameterError, ToleranceError
-from mjbeer.theory.motion import UNCERTAIN, solve
-from mjbeer.theory.quadrature import TravelTime
+from mjbeer.theory.motion import UNCERTAIN, TravelTime, solve
 from tests.support import taylor
 from tests.support.scenes import METAL, SCENES
 from tests.support.taylor import mp

@@ -7,7 +7,7 @@ import warnings
 from argparse import Namespace
 from contextlib import nullcontext
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,7 +19,10 @@ from mjbeer.output import files, terminal
 from mjbeer.output.terminal import say
 from mjbeer.paper.checks import json_values, to_json
 from mjbeer.theory.scene import Scene
-from mjbeer.theory.trajectory import Trajectory, csv
+from mjbeer.theory.trajectory import csv
+
+if TYPE_CHECKING:
+    from mjbeer.simulation.run import Run
 
 KeyFigure = tuple[str, Any, str, str]  # a name, a value, its unit, and how text shows it: as a format, or in words
 
@@ -27,7 +30,7 @@ KeyFigure = tuple[str, Any, str, str]  # a name, a value, its unit, and how text
 class Summary:
     """The key figures of a trajectory, and until when [s] a can would roll with a coefficient of friction."""
 
-    def __init__(self, trajectory: Trajectory, friction: float = FRICTION) -> None:
+    def __init__(self, trajectory: "Run", friction: float = FRICTION) -> None:
         self.trajectory, self.friction = trajectory, friction
         # Where rolling needs no more than there is, this saves the run that looks for the first time at which it does.
         enough = trajectory.record.needed_friction <= friction
@@ -84,7 +87,7 @@ class Summary:
         return to_json(content, indent=2)
 
 
-def _needed(run: Trajectory) -> str:
+def _needed(run: "Run") -> str:
     if math.isfinite(run.record.needed_friction):
         return "{:.4g} to roll to the end without slipping"
     ends = f"N < 0 from t = {run.record.rolling_ends_at:.6g} s"
@@ -107,8 +110,8 @@ def _steady(scene: Scene) -> list[KeyFigure]:
     return [*figures, ("modes, real and imaginary parts", pairs, "1/s", f"{shown} 1/s")]
 
 
-def trajectory_of(given: Namespace) -> Trajectory:
-    """Simulate the scene that was asked for and return its trajectory."""
+def trajectory_of(given: Namespace) -> "Run":
+    """Simulate the scene that was asked for."""
     from mjbeer.simulation.simulate import simulate
 
     thing = scene(given)

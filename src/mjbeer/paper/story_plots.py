@@ -181,7 +181,7 @@ def draw_lift_off(panels: Sequence[Axes]) -> None:
     # The angle of lift-off rises like a square root just below 1/13, so that the points are denser there.
     ratios = np.unique(np.append(np.geomspace(1e-3, 0.07, 300), 1 / 13 * (1 - np.geomspace(0.1, 1e-6, 20))))
     few = np.array([2e-3, 8e-3, 0.03, 0.06])
-    found = [hopping.fall(float(ratio), GRIP, 5e-5).takeoff() for ratio in few]
+    found = [hopping.takeoff(hopping.fall(float(ratio), GRIP, 5e-5)) for ratio in few]
     measured = [math.nan if angle is None else math.degrees(angle) for angle in found]
     lifts = [math.degrees(hopping.lift_off(float(ratio))) for ratio in ratios]
     (axes,) = panels

@@ -14,8 +14,7 @@ from mjbeer.model.joints import joint_addresses
 from mjbeer.model.mujoco_library import LARGEST
 from mjbeer.simulation.fixed_step import Recorder, Solution
 from mjbeer.simulation.smooth_recorder import SmoothRecorder
-from mjbeer.theory.equations import relaxation_rate
-from mjbeer.theory.scene import Scene
+from mjbeer.theory.scene import Scene, relaxation_rate
 
 _COMPARED = 256
 """Samples at which runs of Gauss-Jackson are compared, if there are more: an error changes within a part of a swing."""
@@ -254,8 +253,7 @@ def _stiffest(scene: Scene) -> float:
     if not scene.damping_law:
         return 0.0
     slip = min(scene.damping_law.slip_rate(scene.mass * scene.gravity * scene.can.radius), LARGEST)
-    angles = np.linspace(0, math.pi, 91)
-    return float(relaxation_rate(scene, angles, np.full_like(angles, slip), np.zeros_like(angles)).max())
+    return float(relaxation_rate(scene, np.linspace(0, math.pi, 91), slip).max())
 
 
 def pendulum_time(scene: Scene, phi0: float, *precision: float) -> OwnTime:

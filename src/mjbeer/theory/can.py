@@ -7,7 +7,6 @@ from typing import NamedTuple
 import numpy as np
 
 from mjbeer import require
-from mjbeer.exceptions import ParameterError
 
 RADIUS = 0.033  # of a 12-oz can [m]; paper, after eq. (31)
 LENGTH = 0.12  # of a 12-oz can [m]; paper, after eq. (31)
@@ -42,11 +41,8 @@ class Can:
             mass=require.within("can mass", self.mass, *require.MASS, "kg", zero=True),
             inertia=require.non_negative("can inertia", self.inertia, "kg m^2"),
         )
-        if self.mass == 0 and self.inertia > 0:
-            raise ParameterError(
-                f"a can without mass has no inertia, got mass 0 kg and inertia {self.inertia!r} kg m^2"
-            )
-        require.within("can inertia", self.inertia, 0, require.RATIO * self.mass * self.radius**2, "kg m^2")
+        most = require.RATIO * self.mass * self.radius**2
+        require.within(f"can inertia with a mass of {self.mass:g} kg", self.inertia, 0, most, "kg m^2")
 
     @property
     def effective_mass(self) -> float:
@@ -110,7 +106,7 @@ class Load:
             mass=require.within("load mass", self.mass, *require.MASS, "kg"),
             offset=require.within("load offset", self.offset, 0, require.SIZE[1], "m"),
             inertia=require.non_negative("load inertia", self.inertia, "kg m^2"),
-            fill=None if self.fill is None else _checked_fill(self.fill),
+            fill=None if self.fill is None else require.within("fill", self.fill, *require.FILL),
         )
 
     @property
@@ -132,15 +128,13 @@ class Load:
         `fill` is h/2a of eq. (32), 0 < fill <= 1.
 
         Raises:
-          ParameterError: as `Load`, or if `fill` is outside (0, 1].
+          ParameterError: as `Load`.
         """
-        radius = require.within("load radius", radius, *require.SIZE, "m")
-        length = require.within("load length", length, *require.SIZE, "m")
-        density = require.positive("load density", density, "kg/m^3")
-        fill = _checked_fill(fill)
+        can, density = Can(radius, length), require.positive("load density", density, "kg/m^3")
+        fill = require.within("fill", fill, *require.FILL)
         shape = segment(fill)
-        mass = density * length * radius**2 * shape.area
-        return cls(mass, offset=radius * shape.offset, inertia=mass * radius**2 * shape.inertia, fill=fill)
+        mass = density * can.length * can.radius**2 * shape.area
+        return cls(mass, offset=can.radius * shape.offset, inertia=mass * can.radius**2 * shape.inertia, fill=fill)
 
     @classmethod
     def point(cls, mass: float, offset: float) -> "Load":
@@ -176,10 +170,6 @@ def segment(fill: float) -> Segment:
     width = float(strip @ across**2) / (3 * total)
     inertia = width + float(strip @ height**2) / total
     return Segment(half_angle=beta, area=beta**3 * total, offset=offset, inertia=inertia, width=width)
-
-
-def _checked_fill(fill: float) -> float:
-    return require.within("fill", require.positive("fill", fill), 0, 1)
 
 
 @dataclass(frozen=True)

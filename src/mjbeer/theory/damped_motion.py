@@ -31,15 +31,8 @@ _WORK = 6_000  # most corrections of Newton's method in all: a can of beer that 
 Rates = Callable[[np.ndarray, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
-def _radau_points() -> np.ndarray:
-    """Return the roots of P_s - P_(s-1), the last of which is 1."""
-    polynomial = np.array([0.0] * (_STAGES - 1) + [-1.0, 1.0])
-    rough = np.sort(legendre.legroots(polynomial).real)
-    points = rough - legendre.legval(rough, polynomial) / legendre.legval(rough, legendre.legder(polynomial))
-    return np.append(points[:-1], 1.0)
-
-
-_NODES = np.append(-1.0, _radau_points())  # the start and the stages of a step
+_RADAU_POINTS = np.sort(legendre.legroots([0.0] * (_STAGES - 1) + [-1.0, 1.0]).real)  # of P_s - P_(s-1); the last is 1
+_NODES = np.array([-1.0, *_RADAU_POINTS[:-1], 1.0])  # the start and the stages of a step
 _INTEGRALS = legendre.legint(np.linalg.inv(legendre.legvander(_NODES[1:], _STAGES - 1)), lbnd=-1) / 2
 """The coefficients P_0 to P_s of the integral, over a step of length 1, of the polynomial through values at stages."""
 _MATRIX = legendre.legvander(_NODES[1:], _STAGES) @ _INTEGRALS  # that integral at the stages, a_ij of the method

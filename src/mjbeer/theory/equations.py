@@ -105,16 +105,6 @@ def slip_rate(scene: Scene, phi_dot: np.ndarray | float, u_dot: np.ndarray | flo
     return u_dot / scene.can.radius - phi_dot
 
 
-def relaxation_rate(
-    scene: Scene, phi: np.ndarray | float, phi_dot: np.ndarray | float, u_dot: np.ndarray | float
-) -> np.ndarray:
-    """Return the rate at which damping brings can and load together [1/s]: the torque's slope times J_f/(a^2 M J)."""
-    radius, mass = scene.can.radius, scene.effective_mass
-    derivative = scene.damping_law.derivative(slip_rate(scene, phi_dot, u_dot))
-    resists = scene.frozen.inertia(phi) / (radius**2 * mass * scene.oscillator.inertia(phi))
-    return derivative * resists + 2 * scene.drag * np.abs(u_dot) / mass
-
-
 def rolling_forces(
     scene: Scene, phi: np.ndarray | float, phi_dot: np.ndarray | float, u_dot: np.ndarray | float
 ) -> Forces:

@@ -102,8 +102,7 @@ def liquid(
 
     `name` is "water", "beer", "olive oil", "glycerol" or "honey", at 20 degrees Celsius; `density` [kg/m^3] and
     kinematic `viscosity` [m^2/s] replace its own. `incline` is in [rad], `fill` is h/2a of eq. (32), less than 1;
-    `drag` [kg/m] is that of the air. `liquid_in` has the numbers that were used; the laws are those of the module
-    `liquid`.
+    `drag` [kg/m] is that of the air. `liquid_in` has the numbers that were used.
 
     A `LiquidWarning` says that the damping is an order of magnitude: at the terminal speed a film on the wall can
     hold a third of the liquid, the centrifugal acceleration exceeds g cos(alpha), or the damping is for other rates.

@@ -8,24 +8,31 @@ both smooth and positive, with `energy` = E - V at the crest and x the distance 
 at the equilibrium. A load that passes crests goes up in turns until it cannot pass the next one, round in an arc, and
 down in turns for ever. What goes the other way is watched in a mirror. A motion that rounding may change noticeably, as
 beside a separatrix, is refused.
+
+With psi = s or x, a path is cut into panels on which a Chebyshev series of fixed degree is dt/dpsi to rounding; they
+are integrated exactly, and inverted by Newton's method. (L. N. Trefethen, Approximation Theory and Approximation
+Practice, chapters 3 and 19.)
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import chain, cycle
 
 import numpy as np
+from numpy.polynomial import chebyshev
 
-from mjbeer.exceptions import NoLibrationError, ParameterError
+from mjbeer.exceptions import NoLibrationError, ParameterError, ToleranceError
 from mjbeer.theory.oscillator import Oscillator, Potential, root
-from mjbeer.theory.quadrature import TravelTime
 
 EPS = 2.0**-52
 ROUNDINGS = 4 * EPS  # of J, and of ramp over depth, relative: up to nine of half an eps each, never all of one sign
 UNCERTAIN = 1e-4  # largest effect of rounding on phi [rad], relative beyond 1 rad: a hundredth of a trusted run's error
 MOST_TURNS = 10_000  # of a motion on an incline, where each takes another time
+_NODES = chebyshev.chebpts1(25)
+_TO_SERIES = np.linalg.inv(chebyshev.chebvander(_NODES, 24)).T
+_TO_INTEGRAL = chebyshev.chebint(np.eye(25), lbnd=-1).T
 
 
 def solve(oscillator: Oscillator, time: np.ndarray, phi0: float, phi_dot0: float) -> tuple[np.ndarray, np.ndarray]:
@@ -52,14 +59,13 @@ def period(oscillator: Oscillator, amplitude: float) -> float:
     """Return the period [s] of a swing of an `amplitude` [rad], with the errors of `Scene.period`."""
     rest = oscillator.equilibrium()
     low, high = (end - rest for end in oscillator.separatrix())
-    sign, potential = oscillator.sign, oscillator.potential
     if low < amplitude < high:
-        start = Start(oscillator, potential, sign, *potential.distances_by_rest(sign * amplitude), 0.0, 0.0)
+        start = Start.at(oscillator, rest + amplitude, 0.0)
         if start.still:
             return math.tau / oscillator.frequency()
         if start.energy_above_next_crest < 0:
             with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
-                found = _period(_arcs_of_swing(start))
+                found = sum(arc.duration for arc, *_ in _arcs_of_swing(start))
                 if start.rounding_delay(-start.energy_above_next_crest, found) <= UNCERTAIN * found:
                     return found
     raise NoLibrationError(
@@ -97,7 +103,12 @@ class Start:
     @cached_property
     def energy_above_next_crest(self) -> float:
         """Return E - V at the next crest downhill [J]."""
-        return self.kinetic - self.potential.below_next_crest(self.angle_past_crest, self.angle_past_rest)
+        if self.angle_past_crest < 0:
+            return self.energy_above_crest
+        past_next = self.angle_past_rest - self.potential.well
+        if abs(past_next) <= self.angle_past_crest:
+            return self.kinetic - float(self.potential.below(past_next))
+        return self.energy_above_crest + self.potential.drop_per_turn
 
     @property
     def swings(self) -> bool:
@@ -154,7 +165,7 @@ class Start:
         begin = first[0].time(self)
         since, cycles = time + begin, 0
         if swing or self.potential.ramp == 0:  # all periods, or turns, are alike
-            cycles, since = np.divmod(since, _period(swing) if swing else first[0].duration)
+            cycles, since = np.divmod(since, sum(arc.duration for arc, *_ in swing or [first]))
         last, angle = float(np.max(since, initial=0.0)), self.angle_past_rest if swing else self.angle_past_crest
         delta_phi, phi_dot, margin, ended = np.empty_like(time), np.empty_like(time), math.inf, 0.0
         for path, turn, energy in chain([first], legs):
@@ -233,10 +244,6 @@ class Turns:
         return passage, x, -speed if self._uphill else speed
 
 
-def _period(swing: list[tuple[Arc, int, float]]) -> float:
-    return sum(path.duration for path, *_ in swing)
-
-
 def _arcs_of_swing(start: Start) -> list[tuple[Arc, int, float]]:
     """Return the paths of a swing, that on the side of the start first; angles are past rest."""
     if start.energy_above_next_crest == 0:
@@ -249,19 +256,15 @@ def _arc_to(start: Start, side: int) -> Arc:
     """Return the arc of a swing downhill (1) or uphill (-1) of the rest: from there, or the crest if that is nearer."""
     potential = start.potential
     well = potential.well if side > 0 else math.tau - potential.well
-
-    def height(distance: np.ndarray | float) -> np.ndarray:
-        return potential.below(-side * distance)
-
     if start.kinetic == 0 and side * start.angle_past_rest > 0:
         distance = min(abs(start.angle_past_rest), abs(start.angle_past_crest))
         by_rest = distance == abs(start.angle_past_rest)
     else:
-        energy = start.kinetic + height(side * start.angle_past_rest)
-        by_rest = height(well / 2) >= energy
+        energy = start.kinetic + potential.below(-start.angle_past_rest)
+        by_rest = potential.below(-side * well / 2) >= energy
         missing = -start.energy_above_next_crest + (0.0 if side > 0 else potential.drop_per_turn)
         wanted = energy if by_rest else missing
-        distance = root(lambda each: height(each) - wanted, 0.0, well / 2)
+        distance = root(lambda each: potential.below(-side * each) - wanted, 0.0, well / 2)
     if by_rest:
         return Arc(start, -side * distance, 0.0, upside_down=True)
     return Arc(start, -side * distance, -side * well, origin=side * well)
@@ -296,3 +299,76 @@ def _paths_over_crests(start: Start) -> Iterator[tuple[Arc | Turns, int, float]]
         energies, batch = energy + drop * np.arange(min(batch, left)), min(4 * batch, 256)
         yield Turns(start, energies), turn, energy
         energy, turn, left = float(energies[-1]) + drop, turn + len(energies), left - len(energies)
+
+
+class TravelTime:
+    """The time t(psi) along a path from its beginning, and its inverse psi(t)."""
+
+    def __init__(self, rate: Callable[[np.ndarray], np.ndarray], *edges: float) -> None:
+        """Set up a path with dt/dpsi = `rate` [s] from the first to the last of the `edges`.
+
+        For psi of shape (panels, nodes) `rate` returns (panels, nodes), or (passages, panels, nodes) if the path is
+        passed so often in a row, the first time with the roughest rate. A `ToleranceError` says that it is too rough.
+        """
+        lows, ends = np.array(edges[:-1]), np.array(edges[1:])
+        panels: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []
+        tried = 0
+        while len(lows):
+            halves = (ends - lows) / 2
+            middles, rates = lows + halves, rate(lows[:, None] + halves[:, None] * (1 + _NODES))
+            rates = rates.reshape(-1, *rates.shape[-2:]).swapaxes(0, 1)  # (panels, passages, nodes)
+            tried += len(lows)  # an ordinary path takes 10 panels, and one that hardly passes a barrier 100
+            if tried > 5000 or not np.isfinite(rates).all() or not ((lows < middles) & (middles < ends)).all():
+                raise ToleranceError(
+                    "the time along this motion is beyond doubles: sizes, masses, gravity or speeds are of too many "
+                    "different orders of magnitude"
+                )
+            done = _are_resolved(rates[:, 0], lows, halves)
+            panels.append((lows[done], halves[done], rates[done]))
+            lows, middles, ends = lows[~done], middles[~done], ends[~done]
+            lows, ends = np.concatenate([lows, middles]), np.concatenate([middles, ends])
+        starts, halves, rates = (np.concatenate(parts) for parts in zip(*panels, strict=True))
+        order = np.argsort(starts)
+        self._size, passages = len(order), rates.shape[1]
+        self._series = rates[order].swapaxes(0, 1).reshape(-1, len(_NODES)) @ _TO_SERIES
+        self._lows, self._halves = np.tile(starts[order], passages), np.tile(halves[order], passages)
+        self._times = np.concatenate([[0.0], np.cumsum(self._series @ _TO_INTEGRAL.sum(axis=1) * self._halves)])
+        self.duration = float(self._times[-1])  # of all passages together [s]
+
+    def time(self, psi: float, passage: int = 0) -> float:
+        """Return the time [s] at which the motion is at `psi` in a `passage`, of which the first one is 0."""
+        panel = max(0, int(np.searchsorted(self._lows[: self._size], psi, side="right")) - 1) + passage * self._size
+        half = self._halves[panel]
+        x = (psi - self._lows[panel]) / half - 1
+        return float(self._times[panel] + half * chebyshev.chebval(x, self._series[panel] @ _TO_INTEGRAL))
+
+    def phase(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return psi at the times `time` [s], and in which passage that is; beyond both ends the motion stays there."""
+        panel = np.clip(np.searchsorted(self._times, time, side="right") - 1, 0, len(self._series) - 1)
+        half, since = self._halves[panel], time - self._times[panel]
+        target, guess = since / half, 2 * since / (self._times[panel + 1] - self._times[panel]) - 1
+        values, integral = self._series[panel].T, (self._series[panel] @ _TO_INTEGRAL).T
+        low, high = -np.ones_like(time), np.ones_like(time)
+        x = np.clip(guess, -1, 1)
+        for _ in range(60):  # if only bisection helps, 53 use up the digits of a double
+            excess = chebyshev.chebval(x, integral, tensor=False) - target
+            low, high = np.where(excess <= 0, x, low), np.where(excess >= 0, x, high)
+            newton = x - excess / chebyshev.chebval(x, values, tensor=False)
+            # Newton's method leaves the bracket by rounding, or where dt/dpsi is steep: bisect there. A step of 1e-10
+            # leaves an error of its square.
+            converged = np.abs(newton - x) <= 1e-10
+            x = np.where(converged | ((newton >= low) & (newton <= high)), newton, (low + high) / 2)
+            if converged.all():
+                break
+        return self._lows[panel] + half * np.clip(1 + x, 0, 2), panel // self._size
+
+
+def _are_resolved(rates: np.ndarray, lows: np.ndarray, halves: np.ndarray) -> np.ndarray:
+    """Return which of the panels reproduce `rates` by a series, as far as the rounding of psi lets them."""
+    coefficients = np.abs(rates @ _TO_SERIES)
+    size, tail = coefficients.max(axis=1), coefficients[:, -3:].max(axis=1)
+    # Noise shows as small coefficients that have stopped falling. Rounding of psi changes dt/dpsi by some eps as often
+    # as the panel is narrower than psi, for panels are as wide as dt/dpsi takes to change by itself.
+    stalled = tail >= 0.1 * coefficients[:, -12:-3].max(axis=1)
+    noise = 16 * EPS * (1 + (np.abs(lows) + halves) / halves)
+    return (tail <= 3e-15 * size) | (stalled & (tail <= noise * size))

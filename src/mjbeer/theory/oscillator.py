@@ -67,19 +67,9 @@ class Potential:
         past_crest = math.remainder(_past_pi(phi) - self.crest_past_pi, math.tau)
         past_rest = math.remainder(reduced(phi) - self.rest, math.tau)
         if self.well > 0 and abs(past_rest) < abs(past_crest):
-            return self.distances_by_rest(past_rest)
+            past_crest = _past_pi(past_rest) + 2 * self.lean
+            return past_crest - (math.tau if past_crest >= math.pi else 0.0), past_rest
         return past_crest, past_crest + self.well - (0.0 if past_crest < 0 else math.tau)
-
-    def distances_by_rest(self, past_rest: float) -> tuple[float, float]:
-        """Return the `distances` by the angle [rad] past the equilibrium of a well."""
-        past_crest = _past_pi(past_rest) + 2 * self.lean
-        return past_crest - (math.tau if past_crest >= math.pi else 0.0), past_rest
-
-    def below_next_crest(self, past_crest: float, past_rest: float) -> float:
-        """Return by how much V at these `distances` is below the next crest downhill [J]."""
-        ahead = past_crest if past_crest < 0 else past_rest - self.well
-        by_next = abs(ahead) <= abs(past_crest)
-        return float(self.below(ahead)) if by_next else float(self.below(past_crest)) - self.drop_per_turn
 
 
 @dataclass(frozen=True)
@@ -87,11 +77,11 @@ class Oscillator:
     """The coefficients of J and V in the formulas above."""
 
     base: float  # constant part of J [kg m^2]
-    chord: float  # coefficient of sin^2(phi/2) in J [kg m^2]
-    coupling: float  # coefficient of sin^2(phi) in J [kg m^2]
-    ramp: float  # mean torque downhill [N m]
     depth: float  # amplitude of the cosine in V [J]
     bottom: float  # angle at which the cosine in V has its minimum [rad]
+    chord: float = 0.0  # coefficient of sin^2(phi/2) in J [kg m^2]
+    coupling: float = 0.0  # coefficient of sin^2(phi) in J [kg m^2]
+    ramp: float = 0.0  # mean torque downhill [N m]
 
     @classmethod
     def sliding(cls, can: Can, load: Load, incline: float, gravity: float) -> "Oscillator":
@@ -102,9 +92,7 @@ class Oscillator:
         normal = gravity * math.cos(incline)
         return cls(
             base=load.inertia + load.moment * load.offset * can.effective_mass / total,
-            chord=0.0,
             coupling=load.moment * load.offset * load.mass / total,
-            ramp=0.0,
             depth=load.moment * math.hypot(normal, lag),
             bottom=math.atan2(-lag, normal),
         )
@@ -117,7 +105,6 @@ class Oscillator:
         return cls(
             base=inertia + can.inertia + can.mass * radius**2,
             chord=4 * load.mass * radius * offset,
-            coupling=0.0,
             ramp=(load.mass + can.mass) * gravity * radius * math.sin(incline),
             depth=load.moment * gravity,
             bottom=-incline,

@@ -57,14 +57,10 @@ class Scene:
 
     def __post_init__(self) -> None:
         can, load = require.instance("can", self.can, Can), require.instance("load", self.load, Load)
-        if not abs(incline := require.number("incline", self.incline, "rad")) < math.pi / 2:
-            raise ParameterError(
-                f"incline must be between -pi/2 and pi/2 [rad] (90 degrees), got {require.format_value(self.incline)}"
-            )
         require.choice("attachment", self.attachment, ATTACHMENTS)
         damped = isinstance(self.damping, Damping)
         vars(self).update(
-            incline=incline,
+            incline=require.within("incline", self.incline, *require.INCLINE, "rad"),
             gravity=require.within("gravity", self.gravity, *require.GRAVITY, "m/s^2", zero=True),
             drag=require.non_negative("drag", self.drag, "kg/m"),
             damping=self.damping if damped else require.non_negative("damping", self.damping, "N m s"),
@@ -84,8 +80,7 @@ class Scene:
             )
         if self.dissipates:  # how fast damping and drag brake where the load resists least, phi = pi, at 1 rad/s
             limits = 1e-12, 1e9  # a slower decay cannot be observed
-            resists = float(self.frozen.inertia(math.pi)) / (a**2 * self.effective_mass * self.oscillator.base)
-            rate = float(self.damping_law.derivative(1.0)) * resists
+            rate = float(relaxation_rate(self, math.pi, 1.0))
             require.within("rate of damping", rate, *limits, "1/s", zero=True)
             require.within("rate of drag", 2 * self.drag * a / self.effective_mass, *limits, "1/s", zero=True)
 
@@ -263,13 +258,7 @@ class Scene:
         damping, drag = float(self.damping_law.derivative(slip)) / a**2, 2 * self.drag * a * abs(slip)
         cubic = mass * float(self.oscillator.inertia(tilt))
         square = damping * float(self.frozen.inertia(tilt)) + drag * self.load.axis_inertia
-        polynomial = np.array([cubic, square, mass * k + damping * a**2 * drag, k * (damping + drag)])
-        roots = np.roots(polynomial).astype(complex)
-        for _ in range(2):  # Newton's method, as an eigenvalue is rounded by the largest one
-            derivative = np.polyval(np.polyder(polynomial), roots)
-            correction = np.zeros_like(roots)
-            roots -= np.divide(np.polyval(polynomial, roots), derivative, out=correction, where=derivative != 0)
-        return np.sort_complex(roots)
+        return np.sort_complex(np.roots([cubic, square, mass * k + damping * a**2 * drag, k * (damping + drag)]))
 
     def slip_rate(self) -> float:
         """Return the mean slip rate of can and load [rad/s] with linear damping: m_t g a sin(alpha)/c, in any motion.
@@ -295,6 +284,12 @@ class Scene:
         if self.attachment == "sliding" and not self.dissipates:
             return self.downhill_weight / self.effective_mass
         return self.downhill_weight / (self.effective_mass + self.load.axis_inertia / self.can.radius**2)
+
+
+def relaxation_rate(scene: Scene, phi: np.ndarray | float, slip: float) -> np.ndarray:
+    """Return the rate [1/s] at which damping brings can and load together, torque'(`slip` [rad/s]) J_f/(a^2 M J)."""
+    resists = scene.frozen.inertia(phi) / (scene.can.radius**2 * scene.effective_mass * scene.oscillator.inertia(phi))
+    return scene.damping_law.derivative(slip) * resists
 
 
 def remembers_call(make: Callable[Parameters, Scene]) -> Callable[Parameters, Scene]:

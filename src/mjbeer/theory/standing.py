@@ -57,9 +57,8 @@ class Standing:
 
     def __post_init__(self) -> None:
         require.instance("can", self.can, Can)
-        for what, value in (("mass", self.can.mass), ("inertia", self.can.inertia)):
-            if value == 0:
-                raise ParameterError(f"a can that stands free must have {what}, as Can.sheet_metal(), got {self.can!r}")
+        if not self.can.mass * self.can.inertia > 0:
+            raise ParameterError(f"a standing can must have mass and inertia, as Can.sheet_metal(), got {self.can!r}")
         fill = require.number("fill", self.fill)
         if not 0 < fill < 1:
             raise ParameterError(f"fill must be between 0 and 1: a full can has no free surface, got {fill!r}")

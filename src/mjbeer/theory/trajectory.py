@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from mjbeer import require
 from mjbeer.exceptions import MjbeerError, ParameterError
+from mjbeer.output import files
 from mjbeer.theory import damped_motion, equations, motion
 from mjbeer.theory.equations import Coordinates, Forces, accelerations, axis_motion, rolling_forces, select_samples
 from mjbeer.theory.liquid import lump_warning
@@ -53,16 +54,6 @@ class Trajectory(Coordinates):
         """Return the name of the integrator, or "exact"."""
         return "exact"
 
-    @property
-    def timestep(self) -> float | None:
-        """Return the fixed timestep of the integrator [s]; None if there was none."""
-        return None
-
-    @property
-    def error_estimate(self) -> float | None:
-        """Return the estimated error of phi and u/a [rad]; None for a motion from theory."""
-        return None
-
     @cached_property
     def energy(self) -> np.ndarray:
         """Return the kinetic and potential energy of can and load together [J], at each sample."""
@@ -102,14 +93,6 @@ class Trajectory(Coordinates):
           ParameterError: if `friction` is negative or no number.
         """
         return Record.of(self, self.scene, require.non_negative("friction", friction, finite=False)).rolling_ends_at
-
-    def takeoff(self) -> float | None:
-        """Return the angle of the load from the top [rad] when the can leaves the incline; None if it stays.
-
-        A lift of up to 1e-9 radii counts as touching: a soft contact sinks in by more than that.
-        """
-        above = self.lift > 1e-9 * self.scene.can.radius
-        return math.pi - float(self.phi[np.argmax(above)]) if above.any() else None
 
     @cached_property
     def solver_warnings(self) -> tuple[str, ...]:
@@ -157,10 +140,8 @@ class Trajectory(Coordinates):
         turns = _turning_times(time, rate, phi_ddot)
         if len(turns) < 3:
             raise MjbeerError(f"no frequency: a swing of 1e-5 rad turns {len(turns)} times here, and 3 are needed")
-        # Four samples a period of a small swing differ by 0.007 of the range of phi, three by 0.03, two by 0.2.
-        step = np.diff(time)
-        followed = step * (rate[:-1] + rate[1:]) / 2 - step**2 * np.diff(phi_ddot) / 12
-        if not np.abs(followed - np.diff(phi)).max() <= 0.05 * np.ptp(phi):
+        # A small swing without damping is the fastest one.
+        if not np.diff(time).max() * scene.oscillator.frequency() <= math.tau / 3:
             raise MjbeerError("no frequency: the samples are too far apart; at least three a period are needed")
         periods = (len(turns) - 1) // 2  # only whole periods, as the two halves of a swing differ on an incline
         return float(math.tau * periods / (turns[2 * periods] - turns[0]))
@@ -196,18 +177,13 @@ class Trajectory(Coordinates):
         Raises:
           OutputError: if the file cannot be written.
         """
-        from mjbeer.output import files
-
         files.write(require.path(path), csv(self))
 
     def __repr__(self) -> str:
         """Return the motion in one line; whether it is trusted is not in it, as that may take a second run."""
-        count = len(self.time)
-        return (
-            f"<{type(self).__name__} {self.scene.attachment}, {self.rolling}, {self.integrator}: {count} "
-            f"sample{'s' * (count != 1)} to t = {self.time[-1]:.6g} s, phi = {self.phi[-1]:.6g} rad, "
-            f"u = {self.u[-1]:.6g} m>"
-        )
+        kind = f"{type(self).__name__} {self.scene.attachment}, {self.rolling}, {self.integrator}"
+        end = f"t = {self.time[-1]:.6g} s, phi = {self.phi[-1]:.6g} rad, u = {self.u[-1]:.6g} m"
+        return f"<{kind}: {len(self.time)} samples to {end}>"
 
 
 def exact(scene: Scene, time: ArrayLike, phi0: float, phi_dot0: float = 0.0) -> Trajectory:
@@ -261,46 +237,24 @@ def csv(motion: Trajectory) -> str:
 
 def _columns(motion: Trajectory) -> dict[str, np.ndarray]:
     """Return the columns of a motion's table by their names, which end with the unit."""
-    return {
-        "time [s]": motion.time,
-        "u [m]": motion.u,
-        "phi [rad]": motion.phi,
-        "u_dot [m/s]": motion.u_dot,
-        "phi_dot [rad/s]": motion.phi_dot,
-        "roll [rad]": motion.roll,
-        "lift [m]": motion.lift,
-        "slip [m]": motion.slip,
-        "energy [J]": motion.energy,
-        "normal force needed [N]": motion.forces.normal,
-        "friction force needed [N]": motion.forces.friction,
-    }
-
-
-def angle_distance(angles: np.ndarray, truth: np.ndarray, start: float | None = None) -> float:
-    """Return the largest distance of `angles` from `truth` [rad].
-
-    With the angle at the `start` [rad], each distance is divided by the largest angle that `truth`, in order of time,
-    has turned from there so far, where that exceeds 1 rad: this is the error that a tolerance bounds.
-    """
-    apart = np.abs(angles - truth)
-    if start is not None:
-        apart = apart / np.maximum(1, np.maximum.accumulate(np.abs(truth - start)))
-    return float(np.max(apart))
+    units = {"time": "s", "u": "m", "phi": "rad", "u_dot": "m/s", "phi_dot": "rad/s"}
+    units |= {"roll": "rad", "lift": "m", "slip": "m", "energy": "J"}
+    columns = {f"{name} [{unit}]": getattr(motion, name) for name, unit in units.items()}
+    return columns | {f"{name} force needed [N]": force for name, force in vars(motion.forces).items()}
 
 
 def distance(motion: Coordinates, truth: Coordinates, radius: float, start: tuple[float, float] | None = None) -> float:
-    """Return the larger of `angle_distance` for phi and for u/a [rad] from another motion at the same times.
+    """Return the largest distance of phi and of u/a [rad] from another motion at the same times.
 
-    `start` has phi [rad] and u [m] at time 0, from which the distance is made relative.
+    With phi [rad] and u [m] at the `start`, each distance is divided by the largest angle that `truth`, in order of
+    time, has turned from there so far, where that exceeds 1 rad: this is the error that a tolerance bounds.
     """
-    phi, rolled = (None, None) if start is None else (start[0], start[1] / radius)
-    return max(angle_distance(motion.phi, truth.phi, phi), angle_distance(motion.u / radius, truth.u / radius, rolled))
-
-
-def phi_error(trajectory: Trajectory, relative: bool = False) -> float:
-    """Return the largest distance of phi [rad] from the exact motion; if `relative`, as `angle_distance` says."""
-    truth = exact_motion(trajectory.scene, trajectory.time, trajectory.phi0, trajectory.phi_dot0)
-    return angle_distance(trajectory.phi, truth.phi, trajectory.phi0 if relative else None)
+    angles, right = (np.array([each.phi, each.u / radius]) for each in (motion, truth))
+    apart = np.abs(angles - right)
+    if start is not None:
+        turned = np.abs(right - np.array([[start[0]], [start[1] / radius]]))
+        apart /= np.maximum(1, np.maximum.accumulate(turned, axis=1))
+    return float(apart.max())
 
 
 def _turning_times(time: np.ndarray, rate: np.ndarray, change: np.ndarray) -> np.ndarray:

@@ -13,7 +13,6 @@ from mjbeer.paper.checks import Check, Result
 from mjbeer.simulation.run import Run
 from mjbeer.studies.validation import motion_checks as motions
 from mjbeer.studies.validation.validate import Validation, checks
-from mjbeer.theory import trajectory as theory
 from mjbeer.theory.can import Damping
 
 CHECKS = {f"{check.name} - {check.by}": check for check in checks()}
@@ -36,7 +35,7 @@ def test_a_wrong_motion_is_found_out() -> None:
     """A gravity 1e-6 too strong shows in phi and in the period."""
     run = simulate(sliding(gravity=9.81 * (1 + 1e-6)), 4, 1.0)
     wrong = dataclasses.replace(run, scene=sliding())
-    assert theory.phi_error(wrong) > 1e-7
+    assert motions.phi_error(wrong) > 1e-7
     assert abs(2 * math.pi / wrong.frequency() / sliding().period(1.0) - 1) > 1e-9
 
 

@@ -14,7 +14,7 @@ from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import Can
 from mjbeer.theory.liquid import liquid_in
 from mjbeer.theory.scene import Scene, frozen, pendulum, sliding
-from mjbeer.theory.trajectory import phi_error
+from mjbeer.theory.trajectory import Trajectory, exact_motion
 
 _FRICTION = 10.0
 """Friction coefficient of the runs with contact. Rolling without slipping needs 1.2 at most in any of them."""
@@ -114,6 +114,13 @@ def _creep(scene: Scene, rolling: Rolling) -> float:
     """Return the largest distance [rad] from the equilibrium, after a start at rest there."""
     rest = equilibrium_53(scene)
     return float(np.abs(simulate(scene, 5, rest, rolling=rolling).phi - rest).max())
+
+
+def phi_error(run: Trajectory, relative: bool = False) -> float:
+    """Return the largest error of phi [rad]; if `relative`, over the angle turned so far where that exceeds 1 rad."""
+    truth = exact_motion(run.scene, run.time, run.phi0, run.phi_dot0).phi
+    turned = np.maximum.accumulate(np.abs(truth - run.phi0)) if relative else 0.0
+    return float((np.abs(run.phi - truth) / np.maximum(1, turned)).max())
 
 
 def _error(scene: Scene, duration: float, phi0: float, phi_dot0: float = 0.0, **setting: Any) -> float:
