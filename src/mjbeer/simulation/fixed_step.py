@@ -3,7 +3,7 @@
 import math
 from collections.abc import Generator, Sequence
 from copy import copy
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
@@ -23,18 +23,13 @@ _STATE = mujoco.mjtState.mjSTATE_FULLPHYSICS
 """MuJoCo's state of a run: time, positions and rates first."""
 
 
-@dataclass(frozen=True, eq=False)
-class Solution:
+class Solution(NamedTuple):
     """The states of a run, and what it says of itself."""
 
-    states: np.ndarray
-    """States at the samples, shape (samples, nq + nv)."""
-    record: Record | None = None
-    """The extremes of all steps, if they were asked for."""
-    error: float | None = None
-    """Estimated error of phi and u/a [rad], relative beyond 1 rad; None if there was no second run."""
-    integrator: str = ""
-    """The name of the integrator."""
+    states: np.ndarray  # at the samples, shape (samples, nq + nv)
+    record: Record | None  # the extremes of all steps, if they were asked for
+    error: float | None  # estimate for phi and u/a [rad], relative beyond 1 rad; None if there was no second run
+    integrator: str  # its name
 
 
 def blocks(
