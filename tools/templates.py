@@ -61,7 +61,7 @@ def text(name: str, folder: pathlib.Path) -> str:
     path = folder / "mechanics" / f"{template.mechanics}.xml"
     root = mjcf_file.read(path)
     if template.scene:
-        mjcf_file.write(root, Mechanics.of(template.scene, template.setting, visuals=True).parameters, path, _DIGITS)
+        mjcf_file.write(root, Mechanics(template.scene, template.setting, visuals=True).parameters, path, _DIGITS)
         joints = [each.get("name", "") for body in root.iter("body") for each in body.findall("joint")]
         keyframe = root.find("keyframe")
         assert keyframe is not None

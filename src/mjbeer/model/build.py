@@ -53,9 +53,8 @@ def build(
     `mjbeer.reset`: a new MjData is at zero coordinates, where a can in contact hardly touches.
 
     The joints are "slide" (u), "lift" (contact only), "roll" and, for a sliding load, "swing" relative to
-    the can; a reduced model has "slide" and "phi", or "phi" alone for a frozen load. With damping
-    under "discrete" all masses of a reduced model are multiplied by the same power of two, which does not change the
-    motion: MuJoCo would not see small forces.
+    the can; a reduced model has "slide" and "phi", or "phi" alone for a frozen load. With damping,
+    a reduced model has "implicitfast" for "discrete", which takes the same steps but does not see small forces.
 
     A `standing` can stands on a floor, on a free joint; without `free` it is held by the world. It has no other
     parameters than `visuals`, `integrator`, `timestep` and `mjcf`, and a free joint only a standing can may have.
@@ -141,7 +140,7 @@ def rolling_spec(scene: Scene, setting: Setting, visuals: bool = False) -> mujoc
     What is only stepped lacks what is only seen or measured, and what exerts no force. A file that does not move as
     theory says is left whole.
     """
-    mechanics, folder = Mechanics.of(scene, setting, visuals), setting.folder
+    mechanics, folder = Mechanics(scene, setting, visuals), setting.folder
     path = folder / "mechanics" / f"{mechanics.file}.xml"
     root = mjcf_file.read(path)
     mjcf_file.write(root, mechanics.parameters, path)

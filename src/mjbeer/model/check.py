@@ -40,8 +40,8 @@ def file_fault(folder: pathlib.Path, attachment: Attachment, rolling: Rolling) -
     metal = Can.sheet_metal() if attachment == "sliding" and rolling != "reduced" else Can.massless()
     paper = Scene(metal, Load.segment(), attachment=attachment)
     root, probe = mjcf_file.read(path), _PROBES[attachment]
-    edited = mjcf_file.differences(root, Mechanics.of(paper, setting, visuals=True).parameters)
-    mjcf_file.write(root, Mechanics.of(probe, setting, visuals=True).parameters, path)
+    edited = mjcf_file.differences(root, Mechanics(paper, setting, visuals=True).parameters)
+    mjcf_file.write(root, Mechanics(probe, setting, visuals=True).parameters, path)
     try:
         model = mjcf_file.to_spec(root, path).compile()
     except ValueError as error:
