@@ -130,7 +130,7 @@ def _soften(spec: mujoco.MjSpec, scene: Scene) -> None:
 
 
 def _portable(text: str, model: mujoco.MjModel) -> str:
-    """Return MJCF as MuJoCo 4 writes it, without what MuJoCo 3.3 does not know, and with the incline in the world."""
+    """Return MJCF as MuJoCo 4 writes it, without what MuJoCo 3.3 and dm_control do not know."""
     root = ET.fromstring(text, ET.XMLParser(target=ET.TreeBuilder(insert_comments=True)))
     for texture in root.iter("texture"):
         if texture.get("colorspace") == "auto":  # what a texture without it has
@@ -139,12 +139,13 @@ def _portable(text: str, model: mujoco.MjModel) -> str:
         if light.get("type") == "directional":
             del light.attrib["type"]
             light.set("directional", "true")
-    for world in root.iter("worldbody"):  # in which a fused body is a frame, which dm_control does not know
-        for frame in world.findall("frame"):
-            for element in frame:
-                there = getattr(model, element.tag)(element.get("name"))
-                for name in ("pos", "quat"):
-                    element.set(name, " ".join(repr(float(each)) for each in getattr(there, name)))
-            world[:] = [each for child in world for each in (child if child is frame else [child])]
+    for parent in list(root.iter()):  # dm_control does not know frames, such as that of a fused body
+        for place, frame in reversed(list(enumerate(parent))):
+            if frame.tag == "frame":
+                for element in frame:
+                    there = getattr(model, element.tag)(element.get("name"))
+                    for name in ("pos", "quat"):
+                        element.set(name, " ".join(repr(float(each)) for each in getattr(there, name)))
+                parent[place : place + 1] = frame
     ET.indent(root)
     return ET.tostring(root, encoding="unicode") + "\n"

@@ -90,23 +90,11 @@ def include_looks(root: ET.Element, what: str, folder: pathlib.Path) -> None:
         place = next((place for place, each in enumerate(parent) if each.tag == "body"), len(parent))
         parent[place:place] = [ET.Element("include", file=f"looks/{file}.xml") for file in files]
     can, incline = (root.find(f".//body[@name='{name}']") for name in ("can", "incline"))
-    if can is not None and incline is not None:
-        can.extend(_level_cameras(folder / "looks" / "cameras.xml", float(incline.get("euler", "0 0 0").split()[1])))
+    if can is not None and incline is not None:  # cameras are level, in a frame that turns back by the incline
+        angle = float(incline.get("euler", "0 0 0").split()[1])
+        ET.SubElement(ET.SubElement(can, "frame", euler=f"0 {0 - angle:.17g} 0"), "include", file="looks/cameras.xml")
     if what == "standing":
         ET.SubElement(ET.SubElement(root, "worldbody"), "include", file="looks/floor.xml")
-
-
-def _level_cameras(path: pathlib.Path, angle: float) -> ET.Element:
-    """Return the cameras of a file, for a body that is turned by an `angle` [degrees] about the y axis."""
-    cameras, along, up = mjcf_file.read(path), math.cos(math.radians(angle)), math.sin(math.radians(angle))
-    back = np.array([[along, 0, -up], [0, 1, 0], [up, 0, along]])
-    for camera in cameras:
-        for name in ("pos", "xyaxes"):
-            if name not in camera.attrib:
-                raise TemplateError(f"{path} has a camera without {name}, which mjbeer turns with the incline")
-            vectors = np.array(camera.attrib[name].split(), float).reshape(-1, 3) @ back.T
-            camera.set(name, " ".join(f"{each:.12g}" for each in vectors.ravel()))
-    return cameras
 
 
 def _fit_to_scene(spec: mujoco.MjSpec, scene: Scene, folder: pathlib.Path) -> None:
