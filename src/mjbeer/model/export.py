@@ -1,6 +1,5 @@
 """A scene made ready for MuJoCo's viewer, and written as one stand-alone MJCF file, for MuJoCo 4 or for others too."""
 
-import math
 import os
 import xml.etree.ElementTree as ET
 
@@ -13,7 +12,7 @@ from mjbeer.model.mujoco_library import library
 from mjbeer.model.setting import FRICTION, INTEGRATORS, Integrator, MujocoIntegrator, Rolling, Setting
 from mjbeer.output import files
 from mjbeer.theory.scene import Scene
-from mjbeer.theory.standing import QUANTITATIVE, Standing
+from mjbeer.theory.standing import Standing
 
 PORTABLE: tuple[MujocoIntegrator, ...] = ("Euler", "implicitfast", "RK4")
 """The integrators that all have which load a portable export: MJX and mujoco_warp have no "implicit", and MuJoCo 3.3
@@ -42,9 +41,8 @@ def export(
     `PORTABLE`, the scene must have no drag and no damping but in proportion to a rate, and a contact is softer:
     docs/portability.md has the errors.
 
-    A `standing` can is written with the floor that it stands on, and with the keyframes "start", "slosh" and "fall"; or
-    without `free` as one that is held. It has no other parameters than `integrator`, `timestep` and `portable`, with
-    which it lacks the damping of breaking waves.
+    A `standing` can is written with the floor that it stands on, or without `free` as one that is held. It has no other
+    parameters than `integrator`, `timestep`, `mjcf` and `portable`, with which it lacks the damping of breaking waves.
 
     Raises:
       ParameterError: if a parameter is not allowed.
@@ -62,8 +60,7 @@ def export(
     setting = Setting(rolling, integrator, timestep, friction=friction, mjcf=mjcf)
     spec = specification(scene, setting, True, free, phi0, phi_dot0)
     if isinstance(scene, Standing):
-        if free:
-            _add_keyframes(spec, scene)
+        spec.add_key(name=START)
         spec.comment = f" Written by mjbeer: {scene!r}. "
         for joint in spec.joints if portable else ():
             joint.damping = [joint.damping[0], 0, 0]
@@ -81,22 +78,6 @@ def export(
     model = spec.compile()
     text = _text(spec)
     files.write(target, _portable(text, model) if portable else text)
-
-
-def _add_keyframes(spec: mujoco.MjSpec, can: Standing) -> None:
-    """Add the keyframes of a free standing can.
-
-    "start" is at rest, "slosh" has a surface that rises by 0.1 R at the wall, "fall" leans by 1 rad, beyond tipping.
-    """
-    upright, rest = [1.0, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0] * can.modes
-    tilt = math.asin(QUANTITATIVE / can.elevations(1)[0])
-    turned = [math.cos(tilt / 2), 0.0, math.sin(tilt / 2), 0.0]
-    leaning = [math.cos(0.5), 0.0, math.sin(0.5), 0.0]
-    above = can.can.radius * math.sin(1.0)
-    spec.add_key(name=START, qpos=[0, 0, 0, *upright, *rest])
-    if can.modes > 0:
-        spec.add_key(name="slosh", qpos=[0, 0, 0, *upright, *turned, *rest[4:]])
-    spec.add_key(name="fall", qpos=[0, 0, above, *leaning, *rest])
 
 
 def _text(spec: mujoco.MjSpec) -> str:
