@@ -70,42 +70,35 @@ def model_fault(model: mujoco.MjModel, scene: Scene, setting: Setting) -> str | 
         model.opt.integrator = mujoco.mjtIntegrator.mjINT_RK4
     rate = math.sqrt(max(scene.gravity, 1.0) / radius)
     phi = np.array([-2.6, -0.7, 0.3, 1.1, 2.2])  # no two are each other's mirror image, or a quarter turn apart
-    phi_dot, zeros = rate * np.array([2.0, -1.0, 0.5, 3.0, -2.0]), np.zeros(len(phi))
-    roll, roll_dot = (phi[::-1], phi_dot[::-1]) if sliding else (phi, phi_dot)
-    rates = {"u_dot": radius * roll_dot, "phi_dot": phi_dot, "roll_dot": roll_dot, "lift_dot": zeros}
-    lift = zeros - START_DEPTH * radius
-    states = to_states(model, Coordinates(time=zeros, u=radius * roll, phi=phi, roll=roll, lift=lift, **rates))
-    found, data = np.empty((len(states), model.nv)), mujoco.MjData(model)
-    for place, state in enumerate(states):
-        found[place] = _accelerations(model, data, scene, state)
+    phi_dot = rate * np.array([2.0, -1.0, 0.5, 3.0, -2.0])
+    states = _states(model, radius, phi, phi_dot, *((phi[::-1], phi_dot[::-1]) if sliding else (phi, phi_dot)))
+    # The rates of all motions that roll without slipping: of phi, of the axis; or of both.
+    one, other = np.eye(2) if sliding else np.ones((2, 1))
+    rolls = _states(model, radius, 0 * one, one, 0 * other, other)[:, model.nq :]
+    found, data, inertia = [], mujoco.MjData(model), np.empty((model.nv, model.nv))
+    for state in states:
+        data.qpos[:], data.qvel[:] = np.split(state, 2)
+        with quiet():
+            mujoco.mj_forward(model, data)
         if (data.ne, data.ncon > 0, data.nf + data.nl) != (int(rolling == "equality"), rolling == "contact", 0):
             return f"gives {data.nefc} rows of constraints, not only those of rolling"
+        mujoco.mj_fullM(model, data, inertia)
+        # MuJoCo's own accelerations are those of a soft constraint.
+        found.append(np.linalg.solve(rolls @ inertia @ rolls.T, rolls @ data.qfrc_smooth) @ rolls)
     slopes = np.concatenate([states[:, model.nq :], found], axis=1)
-    _, right = accelerations(scene, phi, phi_dot, rates["u_dot"])
-    difference = np.abs(to_coordinates(model, scene, slopes, zeros).phi_dot - right).max()
+    _, right = accelerations(scene, phi, phi_dot, to_coordinates(model, scene, states, phi).u_dot)
+    difference = np.abs(to_coordinates(model, scene, slopes, phi).phi_dot - right).max()
     size = np.abs(right).max() + rate**2
     if not difference <= _ALLOWED * size:
         return f"accelerates phi by up to {difference:.3g} rad/s^2 (of {size:.3g}) otherwise than theory"
     return "makes MuJoCo warn of a state of rolling" if np.any(data.warning.number) else None
 
 
-def _accelerations(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, state: np.ndarray) -> np.ndarray:
-    """Return the accelerations of the joints in a state, shape (nv,); a soft constraint is replaced by that of rolling.
-
-    The data then have what MuJoCo computes for that state.
-    """
-    joints = joint_addresses(model)
-    data.qpos[:], data.qvel[:], data.qacc_warmstart[:] = *np.split(state, 2), 0.0
-    with quiet():
-        mujoco.mj_forward(model, data)
-    if "roll" not in joints:
-        return data.qacc
-    rolling = np.zeros((2, model.nv))  # the motions that roll without slipping: of the axis, and of phi alone
-    rolling[0, [joints["slide"], joints["roll"]]] = scene.can.radius, 1.0
-    if "swing" in joints:
-        rolling[:, joints["swing"]] = -1.0, 1.0
-    else:
-        rolling = rolling[:1]
-    inertia = np.empty((model.nv, model.nv))
-    mujoco.mj_fullM(model, data, inertia)
-    return rolling.T @ np.linalg.solve(rolling @ inertia @ rolling.T, rolling @ data.qfrc_smooth)
+def _states(
+    model: mujoco.MjModel, radius: float, phi: np.ndarray, phi_dot: np.ndarray, roll: np.ndarray, roll_dot: np.ndarray
+) -> np.ndarray:
+    """Return states in which the can rolls without slipping, and touches."""
+    zeros = np.zeros(len(phi))
+    rates = {"u_dot": radius * roll_dot, "phi_dot": phi_dot, "roll_dot": roll_dot, "lift_dot": zeros}
+    lift = zeros - START_DEPTH * radius
+    return to_states(model, Coordinates(time=zeros, u=radius * roll, phi=phi, roll=roll, lift=lift, **rates))
