@@ -69,33 +69,28 @@ def attach(
     """
     require.instance("parent", parent, mujoco.MjSpec)
     free = require.choice("free", free, (True, False))
-    place = require.samples("pos", pos, "m"), require.samples("quat", quat)
-    if len(place[0]) != 3:
+    if len(require.samples("pos", pos, "m")) != 3:
         raise ParameterError(f"pos must have 3 numbers, got {require.format_value(pos)}")
-    if len(place[1]) != 4 or not place[1].any():
+    if len(require.samples("quat", quat)) != 4 or not np.any(quat):
         raise ParameterError(f"quat must have 4 numbers, not all 0, got {require.format_value(quat)}")
-    if not require.instance("prefix", prefix, str):
-        raise ParameterError("prefix must not be empty, got ''")
-    if parent.body(f"{prefix}can") is not None:
+    if parent.body(f"{require.instance('prefix', prefix, str)}can") is not None:
         raise ParameterError(f"the parent has a can of this prefix already: give another one, got {prefix!r}")
     require.choice("body", body, ["world"] if free else [each.name for each in parent.bodies])
-    coefficients = [] if friction is None else np.atleast_1d(np.asarray(friction, dtype=object)).tolist()
-    for each in coefficients:
-        require.non_negative("friction", each)
-    if len(coefficients) > 3:
-        raise ParameterError(f"friction must have 1, 2 or 3 numbers, got {require.format_value(friction)}")
+    coefficients = np.empty(0) if friction is None else require.samples("friction", np.atleast_1d(friction))
+    if len(coefficients) > 3 or np.any(coefficients < 0):
+        raise ParameterError(f"friction must be 1, 2 or 3 numbers of 0 or more, got {require.format_value(friction)}")
     child, option = _specification(can), parent.option
     if option.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL:
         option.cone = child.option.cone
     touching = child.geom("can")
-    touching.friction = [*coefficients, *touching.friction[len(coefficients) :]]
+    touching.friction[: len(coefficients)] = coefficients
     if isinstance(can, Scene):
         if option.impratio == 1:
             option.impratio = child.option.impratio
         if option.integrator == mujoco.mjtIntegrator.mjINT_EULER:
             option.integrator = child.option.integrator
         kind = mujoco.mjtIntegrator(option.integrator).name.removeprefix("mjINT_")
-        integrator = next(each for each in INTEGRATORS if each.upper() == kind)
+        (integrator,) = (each for each in INTEGRATORS if each.upper() == kind)
         touching.solref = [mechanics.stiffest(integrator, option.timestep, contact=True), 1]
     reasons = _spoiling_options(option, can) + _mass_bounds(parent.compiler, child)
     child.option, child.visual.map.zfar = parent.option, parent.visual.map.zfar  # MuJoCo warns of what differs
@@ -103,7 +98,7 @@ def attach(
     root.pos, root.quat = [0, 0, 0], [1, 0, 0, 0]
     if free:
         root.add_freejoint(name="free")
-    attached = parent.body(body).add_frame(pos=place[0], quat=place[1]).attach_body(root, prefix, "")
+    attached = parent.body(body).add_frame(pos=pos, quat=quat).attach_body(root, prefix, "")
     if reasons:
         warnings.warn(f"the parent's options spoil the can: {'; '.join(reasons)}", UntrustedWarning, stacklevel=2)
     return attached
@@ -122,16 +117,14 @@ def refill(model: mujoco.MjModel, can: Standing | Scene, prefix: str = "can-") -
     """
     require.instance("model", model, mujoco.MjModel)
     require.instance("prefix", prefix, str)
-    spec, find = _specification(can, visuals=False), mujoco.mj_name2id
-    kinds = mujoco.mjtObj.mjOBJ_BODY, mujoco.mjtObj.mjOBJ_JOINT
-    there = [each for each in _PARTS if any(find(model, kind, f"{prefix}{each}") >= 0 for kind in kinds)]
+    spec, kinds = _specification(can, visuals=False), (mujoco.mjtObj.mjOBJ_BODY, mujoco.mjtObj.mjOBJ_JOINT)
+    there = [each for each in _PARTS if any(mujoco.mj_name2id(model, kind, f"{prefix}{each}") >= 0 for kind in kinds)]
     needed = [each for each in _PARTS if spec.body(each) is not None or spec.joint(each) is not None]
     size = [can.can.radius, can.can.length / 2]  # written to MJCF with 6 digits or more
     if there != needed or not np.allclose(model.geom(f"{prefix}can").size[:2], size, rtol=1e-6, atol=0):
         raise ParameterError(
             f"the model must have a can under the prefix {require.format_value(prefix)} with radius and half length "
-            f"{size} m and with {', '.join(needed)}; it has {', '.join(there) or 'none'}, "
-            f"got {require.format_value(can)}"
+            f"{size} m and with {', '.join(needed)}; it has {', '.join(there) or 'none'}"
         )
     if any(min(spec.body(each.name).inertia) < mujoco.mjMINVAL for each in spec.joints if each.name != "swing"):
         raise UnsupportedError(
@@ -147,9 +140,8 @@ def refill(model: mujoco.MjModel, can: Standing | Scene, prefix: str = "can-") -
         joint.damping[:], joint.dampingpoly[:] = each.damping[0], each.damping[1:]
     for each in spec.sites:
         model.site(f"{prefix}{each.name}").pos = each.pos
-    drawn = looks.beer_column(can) if isinstance(can, Standing) else {}
-    for name, (low, high, radius) in drawn.items():
-        if find(model, mujoco.mjtObj.mjOBJ_GEOM, f"{prefix}{name}") >= 0:
+    if isinstance(can, Standing) and mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_GEOM, f"{prefix}beer") >= 0:
+        for name, (low, high, radius) in looks.beer_column(can).items():
             geom = model.geom(f"{prefix}{name}")
             geom.pos[2], geom.size[:2] = (low + high) / 2, (radius, (high - low) / 2)
     mujoco.mj_setConst(model, mujoco.MjData(model))  # which it takes as its workspace
@@ -170,11 +162,8 @@ def _spoiling_options(option: mujoco.MjOption, can: Standing | Scene) -> list[st
             f"{_COARSE:g} or less"
         )
     if explicit and option.timestep * decay > _RK4:
-        remedy = "" if isinstance(can, Scene) else ", or another integrator"
-        reasons.append(
-            f"with RK4 its damping may diverge at a timestep of {option.timestep:g} s: give {_RK4 / decay:.2g} s or "
-            f"less{remedy}"
-        )
+        limit = f"{_RK4 / decay:.2g} s or less"
+        reasons.append(f"with RK4 its damping may diverge at a timestep of {option.timestep:g} s: give {limit}")
     if not math.isclose(size, can.gravity, rel_tol=1e-6):
         reasons.append(f"gravity is {size:.6g} m/s^2, and the can is made for {can.gravity:.6g}")
     if decay > 0 and option.disableflags & int(mujoco.mjtDisableBit.mjDSBL_DAMPER):
@@ -185,13 +174,11 @@ def _spoiling_options(option: mujoco.MjOption, can: Standing | Scene) -> list[st
 def _mass_bounds(compiler: mujoco.MjsCompiler, child: mujoco.MjSpec) -> list[str]:
     """Return what a parent's compiler does to the masses of a can."""
     moving = [body for body in child.bodies if body.mass > 0]
+    least = {"boundmass": min(body.mass for body in moving), "boundinertia": min(min(body.inertia) for body in moving)}
     reasons = ["settotalmass scales its masses"] if compiler.settotalmass > 0 else []
-    for name, least in (
-        ("boundmass", min(body.mass for body in moving)),
-        ("boundinertia", min(min(body.inertia) for body in moving)),
-    ):
-        if getattr(compiler, name) > least:
-            reasons.append(f"{name} raises what is less, from {least:.2g} on, once the world is saved and read again")
+    for name, value in least.items():
+        if getattr(compiler, name) > value:
+            reasons.append(f"{name} raises what is less, from {value:.2g} on, once the world is saved and read again")
     return reasons
 
 
@@ -337,4 +324,4 @@ def transverse_inertia(can: Can) -> float:
     2 (m - I/a^2), or as much of that as there is.
     """
     ends = min(max(2 * (can.mass - can.inertia / can.radius**2), 0.0), can.mass)
-    return can.inertia / 2 + (can.mass - ends) * can.length**2 / 12 + ends * can.length**2 / 4
+    return can.inertia / 2 + (can.mass + 2 * ends) * can.length**2 / 12
