@@ -66,7 +66,7 @@ def text(name: str, folder: pathlib.Path) -> str:
         keyframe = root.find("keyframe")
         assert keyframe is not None
         keyframe[:] = [_key(key, joints, template.scene, *start) for key, start in template.keys.items()]
-    looks.include_looks(root, template.looks, folder)
+    looks.include_looks(root, template.looks)
     root.set("model", name)
     written = f"from mechanics/{template.mechanics}.xml, which has the reasons, and looks/. Edit those"
     root.insert(0, ET.Comment(f" {template.about}. Written by `make templates` {written}. "))

@@ -113,9 +113,8 @@ def specification(
             raise ParameterError("only a standing can is held by free=False: the can of a scene rolls")
         return rolling_spec(scene, setting, visuals)
     given = {"rolling": setting.rolling, "friction": setting.friction, "phi0": phi0, "phi_dot0": phi_dot0}
-    for (name, value), usual in zip(given.items(), ("reduced", FRICTION, 0.0, 0.0), strict=True):
-        if value != usual:
-            raise ParameterError(f"a standing can has no {name}, got {require.format_value(value)}")
+    if tuple(given.values()) != (Setting.rolling, FRICTION, 0.0, 0.0):
+        raise ParameterError(f"a standing can does not roll: it has none of {', '.join(given)}, got {given}")
     return standing_spec(scene, setting, visuals, free)
 
 
@@ -140,12 +139,11 @@ def rolling_spec(scene: Scene, setting: Setting, visuals: bool = False) -> mujoc
     What is only stepped lacks what is only seen or measured, and what exerts no force. A file that does not move as
     theory says is left whole.
     """
-    mechanics, folder = Mechanics(scene, setting, visuals), setting.folder
-    path = folder / "mechanics" / f"{mechanics.file}.xml"
-    root = mjcf_file.read(path)
+    mechanics = Mechanics(scene, setting, visuals)
+    path, root = mechanics.path, mjcf_file.read(mechanics.path)
     mjcf_file.write(root, mechanics.parameters, path)
     mjcf_file.remove(root, "keyframe")  # of the file's own scene
-    if not visuals and check.file_fault(folder, scene.attachment, setting.rolling) is None:
+    if not visuals and check.file_fault(setting.folder, scene.attachment, setting.rolling) is None:
         mjcf_file.remove_unused(root, mechanics.acting, scene.dissipates)
     return looks.to_spec(root, path, scene, visuals)
 

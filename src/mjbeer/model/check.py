@@ -10,12 +10,12 @@ import numpy as np
 
 from mjbeer.exceptions import TemplateError
 from mjbeer.model import mjcf_file
-from mjbeer.model.joints import START_DEPTH, joint_addresses, to_coordinates, to_states
+from mjbeer.model.joints import joint_addresses, rolling_coordinates, to_coordinates, to_states
 from mjbeer.model.mechanics import Mechanics
 from mjbeer.model.mujoco_library import quiet
 from mjbeer.model.setting import Rolling, Setting
 from mjbeer.theory.can import Can, Damping, Load
-from mjbeer.theory.equations import Coordinates, accelerations
+from mjbeer.theory.equations import accelerations
 from mjbeer.theory.scene import Attachment, Scene
 
 _PROBES = {
@@ -36,11 +36,11 @@ def file_fault(folder: pathlib.Path, attachment: Attachment, rolling: Rolling) -
 
     As it stands it must be the paper's can. The other numbers are those of a scene that needs all that is in it.
     """
-    path, setting = folder / "mechanics" / f"{attachment}_{rolling}.xml", Setting(rolling)
+    setting, probe = Setting(rolling, mjcf=folder), _PROBES[attachment]
     metal = Can.sheet_metal() if attachment == "sliding" and rolling != "reduced" else Can.massless()
-    paper = Scene(metal, Load.segment(), attachment=attachment)
-    root, probe = mjcf_file.read(path), _PROBES[attachment]
-    edited = mjcf_file.differences(root, Mechanics(paper, setting, visuals=True).parameters)
+    paper = Mechanics(Scene(metal, Load.segment(), attachment=attachment), setting, visuals=True)
+    path, root = paper.path, mjcf_file.read(paper.path)
+    edited = mjcf_file.differences(root, paper.parameters)
     mjcf_file.write(root, Mechanics(probe, setting, visuals=True).parameters, path)
     try:
         model = mjcf_file.to_spec(root, path).compile()
@@ -71,10 +71,11 @@ def model_fault(model: mujoco.MjModel, scene: Scene, setting: Setting) -> str | 
     rate = math.sqrt(max(scene.gravity, 1.0) / radius)
     phi = np.array([-2.6, -0.7, 0.3, 1.1, 2.2])  # no two are each other's mirror image, or a quarter turn apart
     phi_dot = rate * np.array([2.0, -1.0, 0.5, 3.0, -2.0])
-    states = _states(model, radius, phi, phi_dot, *((phi[::-1], phi_dot[::-1]) if sliding else (phi, phi_dot)))
+    roll, roll_dot = (phi[::-1], phi_dot[::-1]) if sliding else (phi, phi_dot)
+    states = to_states(model, rolling_coordinates(radius, radius * roll, radius * roll_dot, phi, phi_dot))
     # The rates of all motions that roll without slipping: of phi, of the axis; or of both.
     one, other = np.eye(2) if sliding else np.ones((2, 1))
-    rolls = _states(model, radius, 0 * one, one, 0 * other, other)[:, model.nq :]
+    rolls = to_states(model, rolling_coordinates(radius, 0 * one, radius * one, 0 * other, other))[:, model.nq :]
     found, data, inertia = [], mujoco.MjData(model), np.empty((model.nv, model.nv))
     for state in states:
         data.qpos[:], data.qvel[:] = np.split(state, 2)
@@ -86,19 +87,9 @@ def model_fault(model: mujoco.MjModel, scene: Scene, setting: Setting) -> str | 
         # MuJoCo's own accelerations are those of a soft constraint.
         found.append(np.linalg.solve(rolls @ inertia @ rolls.T, rolls @ data.qfrc_smooth) @ rolls)
     slopes = np.concatenate([states[:, model.nq :], found], axis=1)
-    _, right = accelerations(scene, phi, phi_dot, to_coordinates(model, scene, states, phi).u_dot)
+    _, right = accelerations(scene, phi, phi_dot, radius * roll_dot)
     difference = np.abs(to_coordinates(model, scene, slopes, phi).phi_dot - right).max()
     size = np.abs(right).max() + rate**2
     if not difference <= _ALLOWED * size:
         return f"accelerates phi by up to {difference:.3g} rad/s^2 (of {size:.3g}) otherwise than theory"
     return "makes MuJoCo warn of a state of rolling" if np.any(data.warning.number) else None
-
-
-def _states(
-    model: mujoco.MjModel, radius: float, phi: np.ndarray, phi_dot: np.ndarray, roll: np.ndarray, roll_dot: np.ndarray
-) -> np.ndarray:
-    """Return states in which the can rolls without slipping, and touches."""
-    zeros = np.zeros(len(phi))
-    rates = {"u_dot": radius * roll_dot, "phi_dot": phi_dot, "roll_dot": roll_dot, "lift_dot": zeros}
-    lift = zeros - START_DEPTH * radius
-    return to_states(model, Coordinates(time=zeros, u=radius * roll, phi=phi, roll=roll, lift=lift, **rates))

@@ -124,7 +124,8 @@ def refill(model: mujoco.MjModel, can: Standing | Scene, prefix: str = "can-") -
     if there != needed or not np.allclose(model.geom(f"{prefix}can").size[:2], size, rtol=1e-6, atol=0):
         raise ParameterError(
             f"the model must have a can under the prefix {require.format_value(prefix)} with radius and half length "
-            f"{size} m and with {', '.join(needed)}; it has {', '.join(there) or 'none'}"
+            f"{size} m and with {', '.join(needed)}; it has {', '.join(there) or 'none'}, "
+            f"got {require.format_value(can)}"
         )
     if any(min(spec.body(each.name).inertia) < mujoco.mjMINVAL for each in spec.joints if each.name != "swing"):
         raise UnsupportedError(

@@ -5,6 +5,7 @@ element and attribute of MJCF, as `mjcf/README.md` lists them.
 """
 
 import math
+import pathlib
 from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -53,9 +54,9 @@ class Mechanics:
         return {"can": _load_with(scene, scene.can.mass) if scene.attachment == "sliding" else _frozen(scene)}
 
     @property
-    def file(self) -> str:
-        """Return the name of the mechanics file, without its folder and ending."""
-        return f"{self.scene.attachment}_{self.setting.rolling}"
+    def path(self) -> pathlib.Path:
+        """Return the path of the mechanics file."""
+        return self.setting.folder / "mechanics" / f"{self.scene.attachment}_{self.setting.rolling}.xml"
 
     @property
     def acting(self) -> tuple[str, ...]:
@@ -67,7 +68,7 @@ class Mechanics:
     @cached_property
     def structure(self) -> Structure:
         """Return what decides which elements and flags the model has."""
-        return self.setting.folder, self.file, self.acting, self.scene.dissipates
+        return self.path, self.acting, self.scene.dissipates
 
     @cached_property
     def parameters(self) -> Parameters:

@@ -114,8 +114,12 @@ _COMPILED: dict[tuple[str, str], Callable[[mujoco.MjModel, str], list[np.ndarray
     ("inertial", "pos"): lambda model, name: [model.body(name).ipos],
     ("inertial", "diaginertia"): lambda model, name: [model.body(name).inertia],
     ("joint", "armature"): lambda model, name: [model.joint(name).armature],
-    ("joint", "damping"): lambda model, name: _parts(model, "dof", int(model.joint(name).dofadr[0])),
-    ("fixed", "damping"): lambda model, name: _parts(model, "tendon", model.tendon(name).id),
+    # in proportion to a rate, and with higher powers
+    ("joint", "damping"): lambda model, name: [model.joint(name).damping, model.joint(name).dampingpoly[0]],
+    ("fixed", "damping"): lambda model, name: [
+        model.tendon_damping[model.tendon(name).id :][:1],
+        model.tendon_dampingpoly[model.tendon(name).id],
+    ],
     ("fixed", "coef"): lambda model, name: [_coefficient(model, *name.split("/"))],
     ("spatial", "armature"): lambda model, name: [model.tendon_armature[model.tendon(name).id :][:1]],
     ("general", "biasprm"): lambda model, name: [model.actuator(name).biasprm[:1]],
@@ -125,11 +129,6 @@ _COMPILED: dict[tuple[str, str], Callable[[mujoco.MjModel, str], list[np.ndarray
     ("pair", "friction"): lambda model, name: [model.pair(name).friction],
     ("geom", "size"): lambda model, name: [model.geom(name).size[:2]],
 }
-
-
-def _parts(model: mujoco.MjModel, kind: str, number: int) -> list[np.ndarray]:
-    """Return the places of damping in proportion to a rate, and of that with higher powers."""
-    return [getattr(model, f"{kind}_damping")[number : number + 1], getattr(model, f"{kind}_dampingpoly")[number]]
 
 
 def _coefficient(model: mujoco.MjModel, tendon: str, joint: str) -> np.ndarray:
