@@ -65,9 +65,8 @@ def model_fault(model: mujoco.MjModel, scene: Scene, setting: Setting) -> str | 
         joints = ("slide", *(("lift",) if rolling == "contact" else ()), "roll", *(("swing",) if sliding else ()))
     if (there := tuple(joint_addresses(model))) != joints:
         return f"gives the joints {', '.join(there)}, not {', '.join(joints)}"
-    if model.opt.integrator != mujoco.mjtIntegrator.mjINT_RK4:  # "discrete" has changes over a whole step
-        model = copy.copy(model)
-        model.opt.integrator = mujoco.mjtIntegrator.mjINT_RK4
+    model = copy.copy(model)
+    model.opt.integrator = mujoco.mjtIntegrator.mjINT_RK4  # "discrete" has changes over a whole step
     rate = math.sqrt(max(scene.gravity, 1.0) / radius)
     phi = np.array([-2.6, -0.7, 0.3, 1.1, 2.2])  # no two are each other's mirror image, or a quarter turn apart
     phi_dot = rate * np.array([2.0, -1.0, 0.5, 3.0, -2.0])

@@ -209,13 +209,12 @@ def _specification(can: Standing | Scene, visuals: bool = True) -> mujoco.MjSpec
     """Return the specification of a can that has no free joint yet."""
     if not isinstance(can, Scene):
         return standing_spec(require.instance("can", can, Standing), Setting(), visuals, free=False)
-    values = lying_parameters(can)
     root, path = _read("lying", Setting().folder)
     mjcf_file.remove(root, "freejoint")
     if can.attachment == "frozen":
         mjcf_file.remove(root, "joint[@name='swing']", "jointpos", "jointvel")
-    values |= {(f"body {each}", "euler"): (0, 0, 0) for each in ("incline", "can")}  # what it meets is the parent's
-    mjcf_file.write(root, values, path)
+    level: mjcf_file.Parameters = {(f"body {each}", "euler"): (0, 0, 0) for each in ("incline", "can")}
+    mjcf_file.write(root, lying_parameters(can) | level, path)
     return looks.to_spec(root, path, can, visuals)
 
 
@@ -227,12 +226,10 @@ def standing_spec(can: Standing, setting: Setting, visuals: bool, free: bool) ->
         mjcf_file.remove(root, "freejoint", "geom[@name='surface']")
     parents = [*root.iterfind(".//body[@name='can']"), *root.iterfind("sensor")]
     first = [(parent, each) for parent in parents for each in parent if "slosh1" in each.get("name", "")]
-    for mode in range(2, can.modes + 1):
-        for parent, each in first:
-            parent.append(ET.fromstring(ET.tostring(each, encoding="unicode").replace("slosh1", f"slosh{mode}")))
-    if can.modes == 0:
-        for parent, each in first:
-            parent.remove(each)
+    for parent, each in first:
+        parent.remove(each)
+        text = ET.tostring(each, encoding="unicode")
+        parent.extend(ET.fromstring(text.replace("slosh1", f"slosh{mode}")) for mode in range(1, can.modes + 1))
     options = {("option", "integrator"): integrator, ("option", "timestep"): (setting.timestep,)}
     mjcf_file.write(root, standing_parameters(can) | options, path)
     return looks.to_spec(root, path, can, visuals)

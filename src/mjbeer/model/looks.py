@@ -133,13 +133,11 @@ def beer_column(standing: Standing) -> dict[str, tuple[float, float, float]]:
     if standing.modes == 0:
         return {"beer": (0.0, height, radius)}
     pivot, thickness = standing.pivots(1)[0], min(0.2 * radius, height / 4)
-    top = height - pivot
-    bottom, ball = min(-top, top - thickness), min(radius, pivot, length - pivot)
-    if ball <= max(top, -bottom):
-        dot = 1e-4 * radius
+    top, ball, dot = height - pivot, min(radius, pivot, length - pivot), 1e-4 * radius
+    depth = max(top, thickness - top)  # of its lower face below the pivot
+    if ball <= depth:
         return {"beer": (0.0, height, radius), "beer_top": (-dot, dot, dot)}
-    wide = math.sqrt(ball**2 - max(top, -bottom) ** 2)
-    return {"beer": (0.0, height - thickness, radius), "beer_top": (bottom, top, wide)}
+    return {"beer": (0.0, height - thickness, radius), "beer_top": (-depth, top, math.sqrt(ball**2 - depth**2))}
 
 
 def _fit_sizes(spec: mujoco.MjSpec, can: Can, assets: pathlib.Path) -> None:
