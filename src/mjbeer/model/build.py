@@ -48,16 +48,15 @@ def build(
     `integrator` and `timestep` [s] allow; a softer one is an edit of what `specify` returns.
 
     With `visuals` the incline is tilted and gravity is upright. Without them gravity is tilted instead: x is downhill
-    and z away from the incline, and `model.opt.gravity` is g (sin alpha, 0, -cos alpha). That model has no geoms but
-    those in contact, and the stages of a step that it does not need are disabled. Begin a loop of your own with
-    `mjbeer.reset`: a new MjData is at zero coordinates, where a can in contact hardly touches.
+    and z away from the incline. That model has no geoms but those in contact, and the stages of a step that it does not
+    need are disabled. Begin a loop of your own with `mjbeer.reset`: zero coordinates let a can hardly touch.
 
-    The joints are "slide" (u), "lift" (contact only), "roll" and, for a sliding load, "swing" relative to
-    the can; a reduced model has "slide" and "phi", or "phi" alone for a frozen load. With damping,
-    a reduced model has "implicitfast" for "discrete", which takes the same steps but does not see small forces.
+    The joints are "slide" (u), "lift" (contact only), "roll" and, for a sliding load, "swing" relative to the can; a
+    reduced model has "slide" and "phi", or "phi" alone for a frozen load. With damping it has "implicitfast" for
+    "discrete", which takes the same steps but does not see small forces.
 
-    A `standing` can stands on a floor, on a free joint; without `free` it is held by the world. It has no other
-    parameters than `visuals`, `integrator`, `timestep` and `mjcf`, and a free joint only a standing can may have.
+    A `standing` can stands on a floor, on a free joint; without `free`, which it alone may lack, it is held by the
+    world. It has no `rolling`, `friction`, `phi0` and `phi_dot0`.
 
     `mjcf` is a folder to be read instead of mjbeer's own; without it, that of the environment variable MJBEER_MJCF
     counts. All but the parameters that its README lists is in the model as it stands there. If it then moves otherwise

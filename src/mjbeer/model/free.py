@@ -94,11 +94,9 @@ def attach(
         touching.solref = [mechanics.stiffest(integrator, option.timestep, contact=True), 1]
     reasons = _spoiling_options(option, can) + _mass_bounds(parent.compiler, child)
     child.option, child.visual.map.zfar = parent.option, parent.visual.map.zfar  # MuJoCo warns of what differs
-    root = child.body("can")
-    root.pos, root.quat = [0, 0, 0], [1, 0, 0, 0]
     if free:
-        root.add_freejoint(name="free")
-    attached = parent.body(body).add_frame(pos=pos, quat=quat).attach_body(root, prefix, "")
+        child.body("can").add_freejoint(name="free")
+    attached = parent.body(body).add_frame(pos=pos, quat=quat).attach_body(child.body("can"), prefix, "")
     if reasons:
         warnings.warn(f"the parent's options spoil the can: {'; '.join(reasons)}", UntrustedWarning, stacklevel=2)
     return attached
@@ -213,8 +211,8 @@ def _specification(can: Standing | Scene, visuals: bool = True) -> mujoco.MjSpec
     mjcf_file.remove(root, "freejoint")
     if can.attachment == "frozen":
         mjcf_file.remove(root, "joint[@name='swing']", "jointpos", "jointvel")
-    level: mjcf_file.Parameters = {(f"body {each}", "euler"): (0, 0, 0) for each in ("incline", "can")}
-    mjcf_file.write(root, lying_parameters(can) | level, path)
+    placed = ("body incline", "euler"), ("body can", "euler"), ("body can", "pos")
+    mjcf_file.write(root, lying_parameters(can) | dict.fromkeys(placed, (0.0, 0.0, 0.0)), path)
     return looks.to_spec(root, path, can, visuals)
 
 
