@@ -154,7 +154,7 @@ def test_what_was_asked_for_arrives(integrator: str, tmp_path: pathlib.Path) -> 
     ("arguments", "error", "message"),
     [
         ({"integrator": OWN[0]}, ParameterError, f"integrator must be one of 'Euler', .*; got '{OWN[0]}'"),
-        ({"path": "x.XML"}, ParameterError, r"MJCF is written: the file's name must end in \.xml, got 'x\.XML'"),
+        ({"path": "x.XML"}, ParameterError, r"the name of the MJCF file must end in \.xml, got 'x\.XML'"),
         ({"path": "file/model.xml"}, OutputError, r"cannot write .*model\.xml"),
         (
             {"integrator": "discrete", "portable": True},

@@ -52,9 +52,7 @@ def export(
     """
     target, (phi0, phi_dot0) = require.path(path), require.start(phi0, phi_dot0)
     if target.suffix != ".xml":  # MuJoCo takes a .urdf for URDF, and its MjSpec reads no .mjcf
-        raise ParameterError(
-            f"MJCF is written: the file's name must end in .xml, got {require.format_value(target.name)}"
-        )
+        raise ParameterError(f"the name of the MJCF file must end in .xml, got {require.format_value(target.name)}")
     names = PORTABLE if require.choice("portable", portable, (True, False)) else INTEGRATORS
     require.choice("integrator", integrator, names)
     setting = Setting(rolling, integrator, timestep, friction=friction, mjcf=mjcf)

@@ -126,9 +126,7 @@ def refill(model: mujoco.MjModel, can: Standing | Scene, prefix: str = "can-") -
             f"got {require.format_value(can)}"
         )
     if any(min(spec.body(each.name).inertia) < mujoco.mjMINVAL for each in spec.joints if each.name != "swing"):
-        raise UnsupportedError(
-            f"MuJoCo moves no pendulum with an inertia below {mujoco.mjMINVAL:g} kg m^2, as of {can}"
-        )
+        raise UnsupportedError(f"MuJoCo moves no pendulum of less than {mujoco.mjMINVAL:g} kg m^2, as of {can}")
     for each in filter(None, map(spec.body, _PARTS)):
         part = model.body(f"{prefix}{each.name}")
         part.mass, part.inertia, part.ipos = each.mass, each.inertia, each.ipos
@@ -155,7 +153,7 @@ def _spoiling_options(option: mujoco.MjOption, can: Standing | Scene) -> list[st
     if isinstance(can, Scene):
         if not explicit:
             reasons.append("with another integrator than RK4 the error of rolling is of the order of the timestep")
-    elif can.modes > 0 and (turned := option.timestep * float(can.frequencies()[-1])) > _COARSE:
+    elif (turned := option.timestep * max(can.frequencies(), default=0.0)) > _COARSE:
         reasons.append(
             f"the timestep of {option.timestep:g} s is coarse: the fastest mode turns by {turned:.3g} rad in it, not "
             f"{_COARSE:g} or less"
@@ -192,10 +190,9 @@ def _fastest_decay(can: Standing | Scene) -> float:
             return 0.0
         load, slope = can.load, can.damping_law.derivative(math.sqrt(can.gravity / can.can.radius))
         return float(slope * (1 / can.can.inertia + 1 / (load.inertia + load.moment * load.offset)))
-    if can.modes == 0:
-        return 0.0
     ratios, omega = can.damping_ratios(), can.frequencies()
-    return float(np.max(2 * (ratios * omega + _BREAKING * omega[0] ** 2 / omega) / _bob_shares(can)))
+    rates = 2 * (ratios * omega + _BREAKING * omega[:1] ** 2 / omega) / _bob_shares(can)
+    return float(np.max(rates, initial=0.0))
 
 
 def _bob_shares(can: Standing) -> np.ndarray:
@@ -288,10 +285,9 @@ def lying_parameters(scene: Scene) -> mjcf_file.Parameters:
         raise UnsupportedError(f"a can that is free in space has no drag of the air, got {scene.drag!r} kg/m")
     found: mjcf_file.Parameters = {("geom can", "size"): (shell.radius, shell.length / 2)}
     if scene.attachment == "sliding":
-        if shell.mass == 0 or shell.inertia == 0:
+        if shell.inertia == 0:
             raise UnsupportedError(
-                "a can without mass and inertia around a sliding load cannot move freely; give it some, as "
-                "can=Can.sheet_metal()"
+                "MuJoCo moves no can without inertia around a sliding load: give it some, as can=Can.sheet_metal()"
             )
         found["joint swing", "damping"] = tuple(scene.damping_law.coefficients)
     across = transverse_inertia(shell)

@@ -29,7 +29,7 @@ def reset(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, phi0: float,
     for name, given, kind in (("model", model, mujoco.MjModel), ("data", data, mujoco.MjData), ("scene", scene, Scene)):
         require.instance(name, given, kind)
     values = _start_values(scene, *require.start(phi0, phi_dot0))
-    joints = joint_addresses(model).keys()
+    joints = {model.joint(joint).name for joint in range(model.njnt)}
     if not joints & {"phi", "roll"}:
         raise ParameterError(f"the model must have the joints of a scene, got {require.format_value(sorted(joints))}")
     mujoco.mj_resetData(model, data)
@@ -64,9 +64,7 @@ def to_states(model: mujoco.MjModel, motion: Coordinates) -> np.ndarray:
 
 
 def rolling_coordinates(radius: float, u: Any, u_dot: Any, phi: Any, phi_dot: Any) -> Coordinates:
-    """Return the coordinates of a can that rolls without slipping and touches; all are arrays of one shape, or numbers.
-
-    The sizes are u [m], phi [rad] and their rates."""
+    """Return the coordinates of a can that rolls without slipping, in contact; u is in [m], phi in [rad]."""
     rates = {"u_dot": u_dot, "phi_dot": phi_dot, "roll_dot": u_dot / radius, "lift_dot": 0 * phi}
     return Coordinates(time=0 * phi, u=u, phi=phi, roll=u / radius, lift=0 * phi - START_DEPTH * radius, **rates)
 

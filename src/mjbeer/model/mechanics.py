@@ -119,7 +119,7 @@ class Mechanics:
             # What the weight of the load gains, over what that of all masses gains: a force squared over an inertia. At
             # a tolerance of 0 the solver would spend all its iterations on rounding.
             light = scene.load.moment**2 / (scene.mass * float(scene.oscillator.inertia(math.pi / 2)))
-            found["option", "tolerance"] = (_TOLERANCE * min(1.0, max(light, 1e-10)) * max(g, 1e-5) ** 2,)
+            found["option", "tolerance"] = (_TOLERANCE * max(light, 1e-10) * max(g, 1e-5) ** 2,)
         else:
             found[rolling, "polycoef"] = 0, radius, 0, 0, 0
         return found
