@@ -55,12 +55,12 @@ def attach(
     not `free` is fixed to it.
 
     `friction` is one coefficient, or two or three: sliding, torsional, rolling. `None` is MuJoCo's default: 1, 0.005
-    and 0.0001. In a contact MuJoCo takes the larger coefficient and the larger condim of the two geoms; the can has
-    condim 3. A can therefore slides with 0.2 only if the floor *and* the can have it.
+    and 0.0001. Of two geoms that meet, MuJoCo takes the larger ones, so that a can slides with 0.2 only if the floor
+    *and* the can have it, and the larger condim; the can has 3.
 
-    Options of the parent that are MuJoCo's defaults are taken as not chosen, and changed for the whole world where that
-    makes contact and rolling exact: an elliptic cone; for a lying can impratio 100, and RK4 instead of Euler. An
-    `UntrustedWarning` says what other options of the parent spoil.
+    Options of the parent that are MuJoCo's defaults are taken as not chosen, and changed for the whole world: to an
+    elliptic cone; for a lying can to impratio 100, and to RK4 instead of Euler. An `UntrustedWarning` says what other
+    options spoil.
 
     Raises:
       ParameterError: if a parameter is not allowed, or there is no such body.

@@ -84,21 +84,20 @@ def include_looks(root: ET.Element, what: str) -> None:
     for geom in root.iter("geom"):
         geom.attrib |= {"group": "3", "class": "main"}
     root.insert(0, ET.Element("include", file="looks/world.xml"))
+    bodies = {body.get("name", ""): body for body in root.iter("body")}
+    bodies.setdefault("load", bodies["can"])
     for body, files in INCLUDES[what].items():
-        parent = root.find(f".//body[@name='{body}']")
-        if parent is None and body == "load":
-            parent = root.find(".//body[@name='can']")
-        if parent is None:
+        if (parent := bodies.get(body)) is None:  # as "slosh1" of a can without modes
             continue
         parent.set("childclass", "visual")
         place = next((place for place, each in enumerate(parent) if each.tag == "body"), len(parent))
         parent[place:place] = [ET.Element("include", file=f"looks/{file}.xml") for file in files]
-    can, incline = (root.find(f".//body[@name='{name}']") for name in ("can", "incline"))
-    if can is not None and incline is not None:  # cameras are level, in a frame that turns back by the incline
-        angle = float(incline.get("euler", "0 0 0").split()[1])
-        ET.SubElement(ET.SubElement(can, "frame", euler=f"0 {0 - angle:.17g} 0"), "include", file="looks/cameras.xml")
     if what == "standing":
         ET.SubElement(ET.SubElement(root, "worldbody"), "include", file="looks/floor.xml")
+    else:  # cameras are level, in a frame that turns back by the incline
+        angle = float(bodies["incline"].get("euler", "0 0 0").split()[1])
+        frame = ET.SubElement(bodies["can"], "frame", euler=f"0 {0 - angle:.17g} 0")
+        ET.SubElement(frame, "include", file="looks/cameras.xml")
 
 
 def _fit_to_scene(spec: mujoco.MjSpec, scene: Scene) -> None:

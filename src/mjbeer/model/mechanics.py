@@ -20,9 +20,8 @@ Structure: TypeAlias = tuple[Hashable, ...]
 """What decides which elements and flags a model has."""
 
 _TOLERANCE = 1e-14
-"""The solver's tolerance over the square of gravity: it ends once an iteration gains less than that, and what moves the
-load must be more. MuJoCo's own 1e-8 m^2/s^4 takes the weight of a light load for nothing. One more iteration of
-Newton's method brings all digits, and 1e-14 costs none in the four scenes; 1e-18 costs a third of the run time."""
+"""The solver's tolerance over the square of gravity: it ends once an iteration gains less. MuJoCo's own 1e-8 m^2/s^4
+takes the weight of a light load for nothing. 1e-14 costs no time in the four scenes; 1e-18 costs a third of it."""
 
 
 class Inertial(NamedTuple):
@@ -68,7 +67,8 @@ class Mechanics:
     @cached_property
     def structure(self) -> Structure:
         """Return what decides which elements and flags the model has."""
-        return self.path, self.acting, self.scene.dissipates
+        scene, setting = self.scene, self.setting
+        return setting.folder, setting.rolling, scene.attachment, self.acting, scene.dissipates
 
     @cached_property
     def parameters(self) -> Parameters:

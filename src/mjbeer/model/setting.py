@@ -72,7 +72,7 @@ class Setting:
             )
         if self.tolerance is not None and self.rolling == "contact":
             raise ParameterError(
-                "a contact is soft, which a tolerance does not cover: rolling must be 'reduced' or 'equality' with one, "
+                "a contact is soft, which no tolerance covers: rolling must be 'reduced' or 'equality' with one, "
                 f"got 'contact' and {self.tolerance!r} rad; take a short timestep, and see error_estimate"
             )
 
