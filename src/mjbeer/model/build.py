@@ -1,7 +1,7 @@
 """Builds the MuJoCo model of a scene, for each of three ways of rolling.
 
-Its mechanics are those of an MJCF file, into which the numbers of the scene are written. A model that is only stepped
-is a skeleton: joints, masses, forces and what touches. One that is seen has looks too.
+The numbers of the scene are written into an MJCF file. What is only stepped is a skeleton: joints, masses, forces and
+what touches. What is seen has looks too.
 """
 
 import copy

@@ -254,26 +254,23 @@ def standing_parameters(can: Standing) -> mjcf_file.Parameters:
         ("geom can", "pos"): (0, 0, half),
         **_inertial("can", shell.mass, half, (across, across, shell.inertia)),
     }
-    middle = can.height / 2
-    moments = can.fixed_moments()
-    lengths = can.gravity / can.frequencies() ** 2
-    critical = 2 * can.frequencies() * can.slosh_masses() * lengths**2
-    dampers = can.damping_ratios() * critical, _BREAKING / can.frequencies() ** 2 * critical
-    parts = can.slosh_masses(), lengths, can.pivots(), *dampers, can.elevations(), _bob_shares(can)
-    for number, each in enumerate(zip(*map(np.ndarray.tolist, parts), strict=True), 1):
-        mass, length, pivot, damper, cubic, rise, share = each
-        name, own = f"slosh{number}", share * mass * length**2
-        bob, arm = mass / (1 - share), length * (1 - share)
-        place = pivot - middle - arm
-        moments = moments - bob * place ** np.arange(3) - [0, 0, own]
-        found |= _inertial(name, bob, -arm, (own,) * 3)
+    middle, omega, share = can.height / 2, can.frequencies(), _bob_shares(can)
+    masses, pivots, lengths = can.slosh_masses(), can.pivots(), can.gravity / omega**2
+    critical = 2 * omega * masses * lengths**2
+    bobs, arms, spins = masses / (1 - share), lengths * (1 - share), share * masses * lengths**2
+    places = pivots - middle - arms
+    mass, first, second = can.fixed_moments() - [bobs.sum(), bobs @ places, bobs @ places**2 + spins.sum()]
+    dampers = can.damping_ratios() * critical, _BREAKING / omega**2 * critical
+    columns = bobs, arms, spins, pivots, *dampers, can.elevations()
+    for number, each in enumerate(np.transpose(columns).tolist(), 1):
+        name, (bob, arm, spin, pivot, damper, cubic, rise) = f"slosh{number}", each
+        found |= _inertial(name, bob, -arm, (spin,) * 3)
         found[f"body {name}", "pos"] = found[f"site {name}_pivot", "pos"] = 0, 0, pivot
         found[f"joint {name}", "damping"] = damper, 0, cubic
         found[f"site {name}_rise", "pos"] = 0, 0, -rise
-    mass, first, second = moments
     level = second - first**2 / mass
-    spin = can.mass * shell.radius**2 / 2 if can.modes == 0 else 1e-9 * level  # nothing drags the liquid along
-    return found | _inertial("liquid", mass, middle + first / mass, (level, level, spin))
+    axial = can.mass * shell.radius**2 / 2 if can.modes == 0 else 1e-9 * level  # nothing drags the liquid along
+    return found | _inertial("liquid", mass, middle + first / mass, (level, level, axial))
 
 
 def lying_parameters(scene: Scene) -> mjcf_file.Parameters:

@@ -47,9 +47,8 @@ def name(scene: Scene | Standing) -> str:
     """Return the name of a can's looks; a load without a fill is drawn as a ball."""
     if isinstance(scene, Standing):
         return "standing"
-    if scene.attachment == "sliding":
-        return "pendulum" if scene.load.fill is None else "sliding"
-    return "hoop" if scene.load.fill is None else "frozen"
+    filled, empty = ("sliding", "pendulum") if scene.attachment == "sliding" else ("frozen", "hoop")
+    return empty if scene.load.fill is None else filled
 
 
 def to_spec(root: ET.Element, path: pathlib.Path, can: Scene | Standing, visuals: bool) -> mujoco.MjSpec:

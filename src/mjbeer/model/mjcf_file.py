@@ -2,10 +2,10 @@
 
 import copy
 import functools
-import math
 import pathlib
 import xml.etree.ElementTree as ET
 from collections.abc import Callable, Collection, Mapping
+from contextlib import suppress
 from typing import TypeAlias
 
 import mujoco
@@ -69,8 +69,7 @@ def differences(root: ET.Element, values: Parameters) -> list[str]:
         if isinstance(value, str):
             same = words == [value]
         else:
-            pairs = zip(words, value, strict=False)
-            same = len(words) == len(value) and all(math.isclose(float(w), v, rel_tol=1e-11) for w, v in pairs)
+            same = len(words) == len(value) and np.allclose(np.array(words, float), value, rtol=1e-11, atol=0)
         if not same:
             found.append(f"{name} {attribute}")
     return found
@@ -143,11 +142,8 @@ def compiled_views(model: mujoco.MjModel, values: Parameters) -> dict[tuple[str,
     found = {}
     for element, attribute in values:
         tag, _, name = element.partition(" ")
-        if place := _COMPILED.get((tag, attribute)):
-            try:
-                found[element, attribute] = place(model, name)
-            except KeyError:  # it was left out, as it is 0 in all scenes of this kind
-                continue
+        with suppress(KeyError):  # of an option, and of what was left out, as it is 0 in all scenes of this kind
+            found[element, attribute] = _COMPILED[tag, attribute](model, name)
     return found
 
 
