@@ -102,6 +102,10 @@ def test_an_export_is_the_model_and_moves_exactly(
         add_start(spec, scene, *START)
         assert_same(spec.compile(), path)
         return
+    shown, read = rolling_spec(scene, Setting(rolling), visuals=True).compile(), mujoco.MjModel.from_xml_path(str(path))
+    for camera in ("side", "quarter"):  # they were in a frame
+        sights = [model.cam_mat0[model.camera(camera).id] for model in (shown, read)]
+        assert np.allclose(*sights, rtol=0, atol=1e-12)  # products of at most five rotations
     root = ET.parse(path).getroot()
     assert not re.search(r"diagexact|colorspace|<frame", text)
     assert not [light for light in root.iter("light") if "type" in light.attrib]

@@ -59,8 +59,7 @@ def attach(
     *and* the can have it, and the larger condim; the can has 3.
 
     Options of the parent that are MuJoCo's defaults are taken as not chosen, and changed for the whole world: to an
-    elliptic cone; for a lying can to impratio 100, and to RK4 instead of Euler. An `UntrustedWarning` says what other
-    options spoil.
+    elliptic cone; for a lying can to impratio 100 and RK4, too. An `UntrustedWarning` says what other options spoil.
 
     Raises:
       ParameterError: if a parameter is not allowed, or there is no such body.
@@ -154,10 +153,8 @@ def _spoiling_options(option: mujoco.MjOption, can: Standing | Scene) -> list[st
         if not explicit:
             reasons.append("with another integrator than RK4 the error of rolling is of the order of the timestep")
     elif (turned := option.timestep * max(can.frequencies(), default=0.0)) > _COARSE:
-        reasons.append(
-            f"the timestep of {option.timestep:g} s is coarse: the fastest mode turns by {turned:.3g} rad in it, not "
-            f"{_COARSE:g} or less"
-        )
+        turn = f"{turned:.3g} rad in it, not {_COARSE:g} or less"
+        reasons.append(f"the timestep of {option.timestep:g} s is coarse: the fastest mode turns by {turn}")
     if explicit and option.timestep * decay > _RK4:
         limit = f"{_RK4 / decay:.2g} s or less"
         reasons.append(f"with RK4 its damping may diverge at a timestep of {option.timestep:g} s: give {limit}")

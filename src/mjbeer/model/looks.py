@@ -148,9 +148,9 @@ def _fit_sizes(spec: mujoco.MjSpec, can: Can, assets: pathlib.Path) -> None:
             geom.size = geom.size * (stretch if geom.type == mujoco.mjtGeom.mjGEOM_BOX else size)
     for camera in spec.cameras:  # as many radii from the can's near end
         camera.pos = size * camera.pos - [0, (can.length - size * LENGTH) / 2, 0]
-    grid = spec.material("grid")
-    grid.texrepeat = np.array(grid.texrepeat) / size
-    spec.stat.extent, spec.stat.center = spec.stat.extent * size, np.array(spec.stat.center) * size
+    spec.material("grid").texrepeat /= size
+    spec.stat.extent *= size
+    spec.stat.center *= size
     for mesh in spec.meshes:
         vertices, faces, mesh.usertexcoord = _shape(assets / mesh.file)
         _reshape(mesh, (vertices * mesh.scale * stretch, faces))
