@@ -49,7 +49,7 @@ def build(
 
     With `visuals` the incline is tilted and gravity is upright. Without them gravity is tilted instead: x is downhill
     and z away from the incline. That model has no geoms but those in contact, and the stages of a step that it does not
-    need are disabled. Begin a loop of your own with `mjbeer.reset`: zero coordinates let a can hardly touch.
+    need are disabled. Begin a loop of your own with `mjbeer.reset`: at zero coordinates a can hardly touches.
 
     The joints are "slide" (u), "lift" (contact only), "roll" and, for a sliding load, "swing" relative to the can; a
     reduced model has "slide" and "phi", or "phi" alone for a frozen load. With damping it has "implicitfast" for

@@ -29,9 +29,9 @@ def file_fault(folder: pathlib.Path, attachment: Attachment, rolling: Rolling) -
 
     As it stands it must be the paper's can. The other numbers are those of a scene that needs all that is in it.
     """
-    setting, damped = Setting(rolling, mjcf=folder), (Damping(1e-3, 1e-4, 1e-5), 0.5)
-    more = damped if attachment == "sliding" else ()
-    probe = Scene(Can(0.05, 0.1, 4.0, 6e-3), Load(0.3, 0.02, 1e-4), 0.3, attachment, 5.0, *more)
+    setting = Setting(rolling, mjcf=folder)
+    damping = (Damping(1e-3, 1e-4, 1e-5), 0.5) if attachment == "sliding" else ()
+    probe = Scene(Can(0.05, 0.1, 4.0, 6e-3), Load(0.3, 0.02, 1e-4), 0.3, attachment, 5.0, *damping)
     metal = Can.sheet_metal() if attachment == "sliding" and rolling != "reduced" else Can.massless()
     paper = Mechanics(Scene(metal, Load.segment(), attachment=attachment), setting, visuals=True)
     path, root = paper.path, mjcf_file.read(paper.path)
@@ -67,9 +67,9 @@ def model_fault(model: mujoco.MjModel, scene: Scene, setting: Setting) -> str | 
     phi_dot = rate * np.array([2.0, -1.0, 0.5, 3.0, -2.0])
     roll, roll_dot = (phi[::-1], phi_dot[::-1]) if sliding else (phi, phi_dot)
     states = to_states(model, rolling_coordinates(radius, radius * roll, radius * roll_dot, phi, phi_dot))
-    # The rates of all motions that roll without slipping: of phi, of the axis; or of both.
-    one, other = np.eye(2) if sliding else np.ones((2, 1))
-    rolls = to_states(model, rolling_coordinates(radius, 0 * one, radius * one, 0 * other, other))[:, model.nq :]
+    # The rates of all joints in motions that roll without slipping: of the can, and of the load; or of both as one.
+    can, load = np.eye(2) if sliding else np.ones((2, 1))
+    rolls = to_states(model, rolling_coordinates(radius, 0 * can, radius * can, 0 * load, load))[:, model.nq :]
     found, data, inertia = [], mujoco.MjData(model), np.empty((model.nv, model.nv))
     for state in states:
         data.qpos[:], data.qvel[:] = np.split(state, 2)
@@ -78,7 +78,7 @@ def model_fault(model: mujoco.MjModel, scene: Scene, setting: Setting) -> str | 
         if (data.ne, data.ncon > 0, data.nf + data.nl) != (int(rolling == "equality"), rolling == "contact", 0):
             return f"gives {data.nefc} rows of constraints, not only those of rolling"
         mujoco.mj_fullM(model, data, inertia)
-        # MuJoCo's own accelerations are those of a soft constraint.
+        # MuJoCo's own qacc is that of a soft constraint, which is allowed; these are without any slip.
         found.append(np.linalg.solve(rolls @ inertia @ rolls.T, rolls @ data.qfrc_smooth) @ rolls)
     slopes = np.concatenate([states[:, model.nq :], found], axis=1)
     _, right = accelerations(scene, phi, phi_dot, radius * roll_dot)
