@@ -61,12 +61,12 @@ def text(name: str, folder: pathlib.Path) -> str:
     path = folder / "mechanics" / f"{template.mechanics}.xml"
     root = mjcf_file.read(path)
     if template.scene:
-        mjcf_file.write(root, Mechanics.of(template.scene, template.setting, visuals=True).parameters, path, _DIGITS)
+        mjcf_file.write(root, Mechanics(template.scene, template.setting, visuals=True).parameters, path, _DIGITS)
         joints = [each.get("name", "") for body in root.iter("body") for each in body.findall("joint")]
         keyframe = root.find("keyframe")
         assert keyframe is not None
         keyframe[:] = [_key(key, joints, template.scene, *start) for key, start in template.keys.items()]
-    looks.include_looks(root, template.looks, folder)
+    looks.include_looks(root, template.looks)
     root.set("model", name)
     written = f"from mechanics/{template.mechanics}.xml, which has the reasons, and looks/. Edit those"
     root.insert(0, ET.Comment(f" {template.about}. Written by `make templates` {written}. "))

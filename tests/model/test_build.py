@@ -74,12 +74,12 @@ def assert_theory(model: mujoco.MjModel, scene: Scene, phi: float, phi_dot: floa
 
 def written(scene: Scene, setting: Setting) -> mujoco.MjModel:
     """A skeleton that had the numbers of other scenes before."""
-    made = Mechanics.of(scene, setting)
+    made = Mechanics(scene, setting)
     model = compiled_model(made)
     data, views = mujoco.MjData(model), compiled_views(model, made.parameters)
     braked = replace(scene, drag=scene.drag + 1.0, gravity=5.0) if scene.dissipates else replace(scene, incline=0.1)
     for other in (scene, braked, scene):
-        if (before := Mechanics.of(other, setting)).structure == made.structure:
+        if (before := Mechanics(other, setting)).structure == made.structure:
             write_numbers(model, data, before, views)
     return model
 
@@ -134,10 +134,10 @@ def test_models_with_other_elements_have_another_structure_and_no_others(monkeyp
     """
     scenes = sliding(can=METAL), sliding(can=METAL, damping=1e-3), sliding(can=METAL, drag=1e-3)
     for rolling in ROLLINGS:  # with a constraint, all damping is that of joints
-        structures = [Mechanics.of(scene, Setting(rolling)).structure for scene in scenes]
+        structures = [Mechanics(scene, Setting(rolling)).structure for scene in scenes]
         assert structures[0] not in structures[1:]
         assert (structures[1] == structures[2]) == (rolling != "reduced")
-    assert len({Mechanics.of(frozen(), Setting("equality", each)).structure for each in INTEGRATORS}) == 1
+    assert len({Mechanics(frozen(), Setting("equality", each)).structure for each in INTEGRATORS}) == 1
     simulate(sliding(), 0.01, 1.0)
     monkeypatch.setattr("mjbeer.model.build.rolling_spec", None)
     simulate(sliding(fill=0.3), 0.01, 1.0)
@@ -162,8 +162,8 @@ def test_what_mujoco_has_not_is_refused(rolling: Rolling, scene: Scene, reason: 
 def test_no_force_is_too_small_to_move_a_damped_load(rolling: Rolling, integrator: MujocoIntegrator) -> None:
     """Let go beside the top, on level ground. After a step the rate is that of the acceleration, less its damping."""
     scene, timestep = sliding(0.0, can=METAL, damping=1e-4), 1e-4
-    for aside in (1e-4, 1e-9, 1e-13):
-        model = build(scene, rolling, integrator=integrator, timestep=timestep)
+    for aside, visuals in ((1e-4, False), (1e-9, True), (1e-13, False), (1e-13, True)):
+        model = build(scene, rolling, visuals, integrator, timestep)
         data = mujoco.MjData(model)
         mjbeer.reset(model, data, scene, math.pi - aside)
         mujoco.mj_step(model, data)

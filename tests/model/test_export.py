@@ -102,6 +102,10 @@ def test_an_export_is_the_model_and_moves_exactly(
         add_start(spec, scene, *START)
         assert_same(spec.compile(), path)
         return
+    shown, read = rolling_spec(scene, Setting(rolling), visuals=True).compile(), mujoco.MjModel.from_xml_path(str(path))
+    for camera in ("side", "quarter"):  # they were in a frame
+        sights = [model.cam_mat0[model.camera(camera).id] for model in (shown, read)]
+        assert np.allclose(*sights, rtol=0, atol=1e-12)  # products of at most five rotations
     root = ET.parse(path).getroot()
     assert not re.search(r"diagexact|colorspace|<frame", text)
     assert not [light for light in root.iter("light") if "type" in light.attrib]
@@ -154,7 +158,7 @@ def test_what_was_asked_for_arrives(integrator: str, tmp_path: pathlib.Path) -> 
     ("arguments", "error", "message"),
     [
         ({"integrator": OWN[0]}, ParameterError, f"integrator must be one of 'Euler', .*; got '{OWN[0]}'"),
-        ({"path": "x.XML"}, ParameterError, r"MJCF is written: the file's name must end in \.xml, got 'x\.XML'"),
+        ({"path": "x.XML"}, ParameterError, r"the name of the MJCF file must end in \.xml, got 'x\.XML'"),
         ({"path": "file/model.xml"}, OutputError, r"cannot write .*model\.xml"),
         (
             {"integrator": "discrete", "portable": True},

@@ -97,7 +97,7 @@ def test_the_readme_lists_the_parameters_and_what_can_be_named() -> None:
     table = re.findall(r"^\| `(.*?)` \| `(.*?)` \|.*\| ([^|]*) \|$", told["Parameters"], re.MULTILINE)
     rows = [(element, each, files) for element, attributes, files in table for each in attributes.split("`, `")]
     for name, (scene, rolling) in MECHANICS.items():
-        written = {(element, attribute) for element, attribute in Mechanics.of(scene, Setting(rolling)).parameters}
+        written = {(element, attribute) for element, attribute in Mechanics(scene, Setting(rolling)).parameters}
         here = {(element, attribute) for element, attribute, files in rows if fits(name, files)}
         assert here == written, name
     for section, kind in (("Joints", "joints"), ("Cameras", "cameras"), ("Sensors", "sensors"), ("Keyframes", "keys")):

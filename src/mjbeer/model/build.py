@@ -1,7 +1,7 @@
 """Builds the MuJoCo model of a scene, for each of three ways of rolling.
 
-Its mechanics are those of an MJCF file, into which the numbers of the scene are written. A model that is only stepped
-is a skeleton: joints, masses, forces and what touches. One that is seen has looks too.
+The numbers of the scene are written into an MJCF file. What is only stepped is a skeleton: joints, masses, forces and
+what touches. What is seen has looks too.
 """
 
 import copy
@@ -48,17 +48,15 @@ def build(
     `integrator` and `timestep` [s] allow; a softer one is an edit of what `specify` returns.
 
     With `visuals` the incline is tilted and gravity is upright. Without them gravity is tilted instead: x is downhill
-    and z away from the incline, and `model.opt.gravity` is g (sin alpha, 0, -cos alpha). That model has no geoms but
-    those in contact, and the stages of a step that it does not need are disabled. Begin a loop of your own with
-    `mjbeer.reset`: a new MjData is at zero coordinates, where a can in contact hardly touches.
+    and z away from the incline. That model has no geoms but those in contact, and the stages of a step that it does not
+    need are disabled. Begin a loop of your own with `mjbeer.reset`: at zero coordinates a can hardly touches.
 
-    The joints are "slide" (u), "lift" (contact only), "roll" and, for a sliding load, "swing" relative to
-    the can; a reduced model has "slide" and "phi", or "phi" alone for a frozen load. With damping
-    under "discrete" all masses of a reduced model are multiplied by the same power of two, which does not change the
-    motion: MuJoCo would not see small forces.
+    The joints are "slide" (u), "lift" (contact only), "roll" and, for a sliding load, "swing" relative to the can; a
+    reduced model has "slide" and "phi", or "phi" alone for a frozen load. With damping it has "implicitfast" for
+    "discrete", which takes the same steps but does not see small forces.
 
-    A `standing` can stands on a floor, on a free joint; without `free` it is held by the world. It has no other
-    parameters than `visuals`, `integrator`, `timestep` and `mjcf`, and a free joint only a standing can may have.
+    A `standing` can stands on a floor, on a free joint; without `free`, which it alone may lack, it is held by the
+    world. It has no `rolling`, `friction`, `phi0` and `phi_dot0`.
 
     `mjcf` is a folder to be read instead of mjbeer's own; without it, that of the environment variable MJBEER_MJCF
     counts. All but the parameters that its README lists is in the model as it stands there. If it then moves otherwise
@@ -114,9 +112,8 @@ def specification(
             raise ParameterError("only a standing can is held by free=False: the can of a scene rolls")
         return rolling_spec(scene, setting, visuals)
     given = {"rolling": setting.rolling, "friction": setting.friction, "phi0": phi0, "phi_dot0": phi_dot0}
-    for (name, value), usual in zip(given.items(), ("reduced", FRICTION, 0.0, 0.0), strict=True):
-        if value != usual:
-            raise ParameterError(f"a standing can has no {name}, got {require.format_value(value)}")
+    if tuple(given.values()) != (Setting.rolling, FRICTION, 0.0, 0.0):
+        raise ParameterError(f"a standing can does not roll: it has none of {', '.join(given)}, got {given}")
     return standing_spec(scene, setting, visuals, free)
 
 
@@ -141,12 +138,11 @@ def rolling_spec(scene: Scene, setting: Setting, visuals: bool = False) -> mujoc
     What is only stepped lacks what is only seen or measured, and what exerts no force. A file that does not move as
     theory says is left whole.
     """
-    mechanics, folder = Mechanics.of(scene, setting, visuals), setting.folder
-    path = folder / "mechanics" / f"{mechanics.file}.xml"
-    root = mjcf_file.read(path)
+    mechanics = Mechanics(scene, setting, visuals)
+    path, root = mechanics.path, mjcf_file.read(mechanics.path)
     mjcf_file.write(root, mechanics.parameters, path)
     mjcf_file.remove(root, "keyframe")  # of the file's own scene
-    if not visuals and check.file_fault(folder, scene.attachment, setting.rolling) is None:
+    if not visuals and check.file_fault(setting.folder, scene.attachment, setting.rolling) is None:
         mjcf_file.remove_unused(root, mechanics.acting, scene.dissipates)
     return looks.to_spec(root, path, scene, visuals)
 

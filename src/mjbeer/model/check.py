@@ -10,21 +10,14 @@ import numpy as np
 
 from mjbeer.exceptions import TemplateError
 from mjbeer.model import mjcf_file
-from mjbeer.model.joints import START_DEPTH, joint_addresses, to_coordinates, to_states
+from mjbeer.model.joints import joint_addresses, rolling_coordinates, to_coordinates, to_states
 from mjbeer.model.mechanics import Mechanics
 from mjbeer.model.mujoco_library import quiet
 from mjbeer.model.setting import Rolling, Setting
 from mjbeer.theory.can import Can, Damping, Load
-from mjbeer.theory.equations import Coordinates, accelerations
+from mjbeer.theory.equations import accelerations
 from mjbeer.theory.scene import Attachment, Scene
 
-_PROBES = {
-    "sliding": Scene(
-        Can(0.05, 0.1, 4.0, 6e-3), Load(0.3, 0.02, 1e-4), 0.3, "sliding", 5.0, Damping(1e-3, 1e-4, 1e-5), 0.5
-    ),
-    "frozen": Scene(Can(0.05, 0.1, 4.0, 6e-3), Load(0.3, 0.02, 1e-4), 0.3, "frozen", 5.0),
-}
-"""Scenes that need all that is in a file, with other numbers than the paper's."""
 _ALLOWED = 1e-9
 """Largest difference of phi_ddot from theory's that a model may have, over the accelerations at those rates. With
 the can above the origin and a board that is tilted, rounding takes up to 1e-13 in random scenes of all sizes."""
@@ -36,12 +29,14 @@ def file_fault(folder: pathlib.Path, attachment: Attachment, rolling: Rolling) -
 
     As it stands it must be the paper's can. The other numbers are those of a scene that needs all that is in it.
     """
-    path, setting = folder / "mechanics" / f"{attachment}_{rolling}.xml", Setting(rolling)
+    setting = Setting(rolling, mjcf=folder)
+    damping = (Damping(1e-3, 1e-4, 1e-5), 0.5) if attachment == "sliding" else ()
+    probe = Scene(Can(0.05, 0.1, 4.0, 6e-3), Load(0.3, 0.02, 1e-4), 0.3, attachment, 5.0, *damping)
     metal = Can.sheet_metal() if attachment == "sliding" and rolling != "reduced" else Can.massless()
-    paper = Scene(metal, Load.segment(), attachment=attachment)
-    root, probe = mjcf_file.read(path), _PROBES[attachment]
-    edited = mjcf_file.differences(root, Mechanics.of(paper, setting, visuals=True).parameters)
-    mjcf_file.write(root, Mechanics.of(probe, setting, visuals=True).parameters, path)
+    paper = Mechanics(Scene(metal, Load.segment(), attachment=attachment), setting, visuals=True)
+    path, root = paper.path, mjcf_file.read(paper.path)
+    edited = mjcf_file.differences(root, paper.parameters)
+    mjcf_file.write(root, Mechanics(probe, setting, visuals=True).parameters, path)
     try:
         model = mjcf_file.to_spec(root, path).compile()
     except ValueError as error:
@@ -65,47 +60,30 @@ def model_fault(model: mujoco.MjModel, scene: Scene, setting: Setting) -> str | 
         joints = ("slide", *(("lift",) if rolling == "contact" else ()), "roll", *(("swing",) if sliding else ()))
     if (there := tuple(joint_addresses(model))) != joints:
         return f"gives the joints {', '.join(there)}, not {', '.join(joints)}"
-    if model.opt.integrator != mujoco.mjtIntegrator.mjINT_RK4:  # "discrete" has changes over a whole step
-        model = copy.copy(model)
-        model.opt.integrator = mujoco.mjtIntegrator.mjINT_RK4
+    model = copy.copy(model)
+    model.opt.integrator = mujoco.mjtIntegrator.mjINT_RK4  # "discrete" has changes over a whole step
     rate = math.sqrt(max(scene.gravity, 1.0) / radius)
     phi = np.array([-2.6, -0.7, 0.3, 1.1, 2.2])  # no two are each other's mirror image, or a quarter turn apart
-    phi_dot, zeros = rate * np.array([2.0, -1.0, 0.5, 3.0, -2.0]), np.zeros(len(phi))
+    phi_dot = rate * np.array([2.0, -1.0, 0.5, 3.0, -2.0])
     roll, roll_dot = (phi[::-1], phi_dot[::-1]) if sliding else (phi, phi_dot)
-    rates = {"u_dot": radius * roll_dot, "phi_dot": phi_dot, "roll_dot": roll_dot, "lift_dot": zeros}
-    lift = zeros - START_DEPTH * radius
-    states = to_states(model, Coordinates(time=zeros, u=radius * roll, phi=phi, roll=roll, lift=lift, **rates))
-    found, data = np.empty((len(states), model.nv)), mujoco.MjData(model)
-    for place, state in enumerate(states):
-        found[place] = _accelerations(model, data, scene, state)
+    states = to_states(model, rolling_coordinates(radius, radius * roll, radius * roll_dot, phi, phi_dot))
+    # The rates of all joints in motions that roll without slipping: of the can, and of the load; or of both as one.
+    can, load = np.eye(2) if sliding else np.ones((2, 1))
+    rolls = to_states(model, rolling_coordinates(radius, 0 * can, radius * can, 0 * load, load))[:, model.nq :]
+    found, data, inertia = [], mujoco.MjData(model), np.empty((model.nv, model.nv))
+    for state in states:
+        data.qpos[:], data.qvel[:] = np.split(state, 2)
+        with quiet():
+            mujoco.mj_forward(model, data)
         if (data.ne, data.ncon > 0, data.nf + data.nl) != (int(rolling == "equality"), rolling == "contact", 0):
             return f"gives {data.nefc} rows of constraints, not only those of rolling"
+        mujoco.mj_fullM(model, data, inertia)
+        # MuJoCo's own qacc is that of a soft constraint, which is allowed; these are without any slip.
+        found.append(np.linalg.solve(rolls @ inertia @ rolls.T, rolls @ data.qfrc_smooth) @ rolls)
     slopes = np.concatenate([states[:, model.nq :], found], axis=1)
-    _, right = accelerations(scene, phi, phi_dot, rates["u_dot"])
-    difference = np.abs(to_coordinates(model, scene, slopes, zeros).phi_dot - right).max()
+    _, right = accelerations(scene, phi, phi_dot, radius * roll_dot)
+    difference = np.abs(to_coordinates(model, scene, slopes, phi).phi_dot - right).max()
     size = np.abs(right).max() + rate**2
     if not difference <= _ALLOWED * size:
         return f"accelerates phi by up to {difference:.3g} rad/s^2 (of {size:.3g}) otherwise than theory"
     return "makes MuJoCo warn of a state of rolling" if np.any(data.warning.number) else None
-
-
-def _accelerations(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, state: np.ndarray) -> np.ndarray:
-    """Return the accelerations of the joints in a state, shape (nv,); a soft constraint is replaced by that of rolling.
-
-    The data then have what MuJoCo computes for that state.
-    """
-    joints = joint_addresses(model)
-    data.qpos[:], data.qvel[:], data.qacc_warmstart[:] = *np.split(state, 2), 0.0
-    with quiet():
-        mujoco.mj_forward(model, data)
-    if "roll" not in joints:
-        return data.qacc
-    rolling = np.zeros((2, model.nv))  # the motions that roll without slipping: of the axis, and of phi alone
-    rolling[0, [joints["slide"], joints["roll"]]] = scene.can.radius, 1.0
-    if "swing" in joints:
-        rolling[:, joints["swing"]] = -1.0, 1.0
-    else:
-        rolling = rolling[:1]
-    inertia = np.empty((model.nv, model.nv))
-    mujoco.mj_fullM(model, data, inertia)
-    return rolling.T @ np.linalg.solve(rolling @ inertia @ rolling.T, rolling @ data.qfrc_smooth)

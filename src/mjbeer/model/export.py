@@ -1,6 +1,5 @@
 """A scene made ready for MuJoCo's viewer, and written as one stand-alone MJCF file, for MuJoCo 4 or for others too."""
 
-import math
 import os
 import xml.etree.ElementTree as ET
 
@@ -13,7 +12,7 @@ from mjbeer.model.mujoco_library import library
 from mjbeer.model.setting import FRICTION, INTEGRATORS, Integrator, MujocoIntegrator, Rolling, Setting
 from mjbeer.output import files
 from mjbeer.theory.scene import Scene
-from mjbeer.theory.standing import QUANTITATIVE, Standing
+from mjbeer.theory.standing import Standing
 
 PORTABLE: tuple[MujocoIntegrator, ...] = ("Euler", "implicitfast", "RK4")
 """The integrators that all have which load a portable export: MJX and mujoco_warp have no "implicit", and MuJoCo 3.3
@@ -42,9 +41,8 @@ def export(
     `PORTABLE`, the scene must have no drag and no damping but in proportion to a rate, and a contact is softer:
     docs/portability.md has the errors.
 
-    A `standing` can is written with the floor that it stands on, and with the keyframes "start", "slosh" and "fall"; or
-    without `free` as one that is held. It has no other parameters than `integrator`, `timestep` and `portable`, with
-    which it lacks the damping of breaking waves.
+    A `standing` can is written with the floor that it stands on, or without `free` as one that is held. It has no other
+    parameters than `integrator`, `timestep`, `mjcf` and `portable`, with which it lacks the damping of breaking waves.
 
     Raises:
       ParameterError: if a parameter is not allowed.
@@ -54,16 +52,13 @@ def export(
     """
     target, (phi0, phi_dot0) = require.path(path), require.start(phi0, phi_dot0)
     if target.suffix != ".xml":  # MuJoCo takes a .urdf for URDF, and its MjSpec reads no .mjcf
-        raise ParameterError(
-            f"MJCF is written: the file's name must end in .xml, got {require.format_value(target.name)}"
-        )
+        raise ParameterError(f"the name of the MJCF file must end in .xml, got {require.format_value(target.name)}")
     names = PORTABLE if require.choice("portable", portable, (True, False)) else INTEGRATORS
     require.choice("integrator", integrator, names)
     setting = Setting(rolling, integrator, timestep, friction=friction, mjcf=mjcf)
     spec = specification(scene, setting, True, free, phi0, phi_dot0)
     if isinstance(scene, Standing):
-        if free:
-            _add_keyframes(spec, scene)
+        spec.add_key(name=START)
         spec.comment = f" Written by mjbeer: {scene!r}. "
         for joint in spec.joints if portable else ():
             joint.damping = [joint.damping[0], 0, 0]
@@ -81,22 +76,6 @@ def export(
     model = spec.compile()
     text = _text(spec)
     files.write(target, _portable(text, model) if portable else text)
-
-
-def _add_keyframes(spec: mujoco.MjSpec, can: Standing) -> None:
-    """Add the keyframes of a free standing can.
-
-    "start" is at rest, "slosh" has a surface that rises by 0.1 R at the wall, "fall" leans by 1 rad, beyond tipping.
-    """
-    upright, rest = [1.0, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0] * can.modes
-    tilt = math.asin(QUANTITATIVE / can.elevations(1)[0])
-    turned = [math.cos(tilt / 2), 0.0, math.sin(tilt / 2), 0.0]
-    leaning = [math.cos(0.5), 0.0, math.sin(0.5), 0.0]
-    above = can.can.radius * math.sin(1.0)
-    spec.add_key(name=START, qpos=[0, 0, 0, *upright, *rest])
-    if can.modes > 0:
-        spec.add_key(name="slosh", qpos=[0, 0, 0, *upright, *turned, *rest[4:]])
-    spec.add_key(name="fall", qpos=[0, 0, above, *leaning, *rest])
 
 
 def _text(spec: mujoco.MjSpec) -> str:
@@ -130,7 +109,7 @@ def _soften(spec: mujoco.MjSpec, scene: Scene) -> None:
 
 
 def _portable(text: str, model: mujoco.MjModel) -> str:
-    """Return MJCF as MuJoCo 4 writes it, without what MuJoCo 3.3 does not know, and with the incline in the world."""
+    """Return MJCF as MuJoCo 4 writes it, without what MuJoCo 3.3 and dm_control do not know."""
     root = ET.fromstring(text, ET.XMLParser(target=ET.TreeBuilder(insert_comments=True)))
     for texture in root.iter("texture"):
         if texture.get("colorspace") == "auto":  # what a texture without it has
@@ -139,12 +118,13 @@ def _portable(text: str, model: mujoco.MjModel) -> str:
         if light.get("type") == "directional":
             del light.attrib["type"]
             light.set("directional", "true")
-    for world in root.iter("worldbody"):  # in which a fused body is a frame, which dm_control does not know
-        for frame in world.findall("frame"):
-            for element in frame:
-                there = getattr(model, element.tag)(element.get("name"))
-                for name in ("pos", "quat"):
-                    element.set(name, " ".join(repr(float(each)) for each in getattr(there, name)))
-            world[:] = [each for child in world for each in (child if child is frame else [child])]
+    for parent in list(root.iter()):  # dm_control does not know frames, such as that of a fused body
+        for place, frame in reversed(list(enumerate(parent))):
+            if frame.tag == "frame":
+                for element in frame:
+                    there = getattr(model, element.tag)(element.get("name"))
+                    for name in ("pos", "quat"):
+                        element.set(name, " ".join(repr(float(each)) for each in getattr(there, name)))
+                parent[place : place + 1] = frame
     ET.indent(root)
     return ET.tostring(root, encoding="unicode") + "\n"

@@ -55,12 +55,11 @@ def attach(
     not `free` is fixed to it.
 
     `friction` is one coefficient, or two or three: sliding, torsional, rolling. `None` is MuJoCo's default: 1, 0.005
-    and 0.0001. In a contact MuJoCo takes the larger coefficient and the larger condim of the two geoms; the can has
-    condim 3. A can therefore slides with 0.2 only if the floor *and* the can have it.
+    and 0.0001. Of two geoms that meet, MuJoCo takes the larger ones, so that a can slides with 0.2 only if the floor
+    *and* the can have it, and the larger condim; the can has 3.
 
-    Options of the parent that are MuJoCo's defaults are taken as not chosen, and changed for the whole world where that
-    makes contact and rolling exact: an elliptic cone; for a lying can impratio 100, and RK4 instead of Euler. An
-    `UntrustedWarning` says what other options of the parent spoil.
+    Options of the parent that are MuJoCo's defaults are taken as not chosen, and changed for the whole world: to an
+    elliptic cone; for a lying can to impratio 100 and RK4, too. An `UntrustedWarning` says what other options spoil.
 
     Raises:
       ParameterError: if a parameter is not allowed, or there is no such body.
@@ -69,41 +68,34 @@ def attach(
     """
     require.instance("parent", parent, mujoco.MjSpec)
     free = require.choice("free", free, (True, False))
-    place = require.samples("pos", pos, "m"), require.samples("quat", quat)
-    if len(place[0]) != 3:
+    if len(require.samples("pos", pos, "m")) != 3:
         raise ParameterError(f"pos must have 3 numbers, got {require.format_value(pos)}")
-    if len(place[1]) != 4 or not place[1].any():
+    if len(require.samples("quat", quat)) != 4 or not np.any(quat):
         raise ParameterError(f"quat must have 4 numbers, not all 0, got {require.format_value(quat)}")
-    if not require.instance("prefix", prefix, str):
-        raise ParameterError("prefix must not be empty, got ''")
-    if parent.body(f"{prefix}can") is not None:
+    if parent.body(f"{require.instance('prefix', prefix, str)}can") is not None:
         raise ParameterError(f"the parent has a can of this prefix already: give another one, got {prefix!r}")
     require.choice("body", body, ["world"] if free else [each.name for each in parent.bodies])
-    coefficients = [] if friction is None else np.atleast_1d(np.asarray(friction, dtype=object)).tolist()
-    for each in coefficients:
-        require.non_negative("friction", each)
-    if len(coefficients) > 3:
-        raise ParameterError(f"friction must have 1, 2 or 3 numbers, got {require.format_value(friction)}")
+    coefficients = np.empty(0) if friction is None else require.samples("friction", np.atleast_1d(friction))
+    if len(coefficients) > 3 or np.any(coefficients < 0):
+        raise ParameterError(f"friction must be 1, 2 or 3 numbers of 0 or more, got {require.format_value(friction)}")
     child, option = _specification(can), parent.option
     if option.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL:
         option.cone = child.option.cone
     touching = child.geom("can")
-    touching.friction = [*coefficients, *touching.friction[len(coefficients) :]]
+    touching.friction[: len(coefficients)] = coefficients
     if isinstance(can, Scene):
         if option.impratio == 1:
             option.impratio = child.option.impratio
         if option.integrator == mujoco.mjtIntegrator.mjINT_EULER:
             option.integrator = child.option.integrator
         kind = mujoco.mjtIntegrator(option.integrator).name.removeprefix("mjINT_")
-        integrator = next(each for each in INTEGRATORS if each.upper() == kind)
+        (integrator,) = (each for each in INTEGRATORS if each.upper() == kind)
         touching.solref = [mechanics.stiffest(integrator, option.timestep, contact=True), 1]
     reasons = _spoiling_options(option, can) + _mass_bounds(parent.compiler, child)
     child.option, child.visual.map.zfar = parent.option, parent.visual.map.zfar  # MuJoCo warns of what differs
-    root = child.body("can")
-    root.pos, root.quat = [0, 0, 0], [1, 0, 0, 0]
     if free:
-        root.add_freejoint(name="free")
-    attached = parent.body(body).add_frame(pos=place[0], quat=place[1]).attach_body(root, prefix, "")
+        child.body("can").add_freejoint(name="free")
+    attached = parent.body(body).add_frame(pos=pos, quat=quat).attach_body(child.body("can"), prefix, "")
     if reasons:
         warnings.warn(f"the parent's options spoil the can: {'; '.join(reasons)}", UntrustedWarning, stacklevel=2)
     return attached
@@ -122,9 +114,8 @@ def refill(model: mujoco.MjModel, can: Standing | Scene, prefix: str = "can-") -
     """
     require.instance("model", model, mujoco.MjModel)
     require.instance("prefix", prefix, str)
-    spec, find = _specification(can, visuals=False), mujoco.mj_name2id
-    kinds = mujoco.mjtObj.mjOBJ_BODY, mujoco.mjtObj.mjOBJ_JOINT
-    there = [each for each in _PARTS if any(find(model, kind, f"{prefix}{each}") >= 0 for kind in kinds)]
+    spec, kinds = _specification(can, visuals=False), (mujoco.mjtObj.mjOBJ_BODY, mujoco.mjtObj.mjOBJ_JOINT)
+    there = [each for each in _PARTS if any(mujoco.mj_name2id(model, kind, f"{prefix}{each}") >= 0 for kind in kinds)]
     needed = [each for each in _PARTS if spec.body(each) is not None or spec.joint(each) is not None]
     size = [can.can.radius, can.can.length / 2]  # written to MJCF with 6 digits or more
     if there != needed or not np.allclose(model.geom(f"{prefix}can").size[:2], size, rtol=1e-6, atol=0):
@@ -134,9 +125,7 @@ def refill(model: mujoco.MjModel, can: Standing | Scene, prefix: str = "can-") -
             f"got {require.format_value(can)}"
         )
     if any(min(spec.body(each.name).inertia) < mujoco.mjMINVAL for each in spec.joints if each.name != "swing"):
-        raise UnsupportedError(
-            f"MuJoCo moves no pendulum with an inertia below {mujoco.mjMINVAL:g} kg m^2, as of {can}"
-        )
+        raise UnsupportedError(f"MuJoCo moves no pendulum of less than {mujoco.mjMINVAL:g} kg m^2, as of {can}")
     for each in filter(None, map(spec.body, _PARTS)):
         part = model.body(f"{prefix}{each.name}")
         part.mass, part.inertia, part.ipos = each.mass, each.inertia, each.ipos
@@ -147,9 +136,8 @@ def refill(model: mujoco.MjModel, can: Standing | Scene, prefix: str = "can-") -
         joint.damping[:], joint.dampingpoly[:] = each.damping[0], each.damping[1:]
     for each in spec.sites:
         model.site(f"{prefix}{each.name}").pos = each.pos
-    drawn = looks.beer_column(can) if isinstance(can, Standing) else {}
-    for name, (low, high, radius) in drawn.items():
-        if find(model, mujoco.mjtObj.mjOBJ_GEOM, f"{prefix}{name}") >= 0:
+    if isinstance(can, Standing) and mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_GEOM, f"{prefix}beer") >= 0:
+        for name, (low, high, radius) in looks.beer_column(can).items():
             geom = model.geom(f"{prefix}{name}")
             geom.pos[2], geom.size[:2] = (low + high) / 2, (radius, (high - low) / 2)
     mujoco.mj_setConst(model, mujoco.MjData(model))  # which it takes as its workspace
@@ -164,17 +152,12 @@ def _spoiling_options(option: mujoco.MjOption, can: Standing | Scene) -> list[st
     if isinstance(can, Scene):
         if not explicit:
             reasons.append("with another integrator than RK4 the error of rolling is of the order of the timestep")
-    elif can.modes > 0 and (turned := option.timestep * float(can.frequencies()[-1])) > _COARSE:
-        reasons.append(
-            f"the timestep of {option.timestep:g} s is coarse: the fastest mode turns by {turned:.3g} rad in it, not "
-            f"{_COARSE:g} or less"
-        )
+    elif (turned := option.timestep * max(can.frequencies(), default=0.0)) > _COARSE:
+        turn = f"{turned:.3g} rad in it, not {_COARSE:g} or less"
+        reasons.append(f"the timestep of {option.timestep:g} s is coarse: the fastest mode turns by {turn}")
     if explicit and option.timestep * decay > _RK4:
-        remedy = "" if isinstance(can, Scene) else ", or another integrator"
-        reasons.append(
-            f"with RK4 its damping may diverge at a timestep of {option.timestep:g} s: give {_RK4 / decay:.2g} s or "
-            f"less{remedy}"
-        )
+        limit = f"{_RK4 / decay:.2g} s or less"
+        reasons.append(f"with RK4 its damping may diverge at a timestep of {option.timestep:g} s: give {limit}")
     if not math.isclose(size, can.gravity, rel_tol=1e-6):
         reasons.append(f"gravity is {size:.6g} m/s^2, and the can is made for {can.gravity:.6g}")
     if decay > 0 and option.disableflags & int(mujoco.mjtDisableBit.mjDSBL_DAMPER):
@@ -185,13 +168,11 @@ def _spoiling_options(option: mujoco.MjOption, can: Standing | Scene) -> list[st
 def _mass_bounds(compiler: mujoco.MjsCompiler, child: mujoco.MjSpec) -> list[str]:
     """Return what a parent's compiler does to the masses of a can."""
     moving = [body for body in child.bodies if body.mass > 0]
+    least = {"boundmass": min(body.mass for body in moving), "boundinertia": min(min(body.inertia) for body in moving)}
     reasons = ["settotalmass scales its masses"] if compiler.settotalmass > 0 else []
-    for name, least in (
-        ("boundmass", min(body.mass for body in moving)),
-        ("boundinertia", min(min(body.inertia) for body in moving)),
-    ):
-        if getattr(compiler, name) > least:
-            reasons.append(f"{name} raises what is less, from {least:.2g} on, once the world is saved and read again")
+    for name, value in least.items():
+        if getattr(compiler, name) > value:
+            reasons.append(f"{name} raises what is less, from {value:.2g} on, once the world is saved and read again")
     return reasons
 
 
@@ -206,10 +187,9 @@ def _fastest_decay(can: Standing | Scene) -> float:
             return 0.0
         load, slope = can.load, can.damping_law.derivative(math.sqrt(can.gravity / can.can.radius))
         return float(slope * (1 / can.can.inertia + 1 / (load.inertia + load.moment * load.offset)))
-    if can.modes == 0:
-        return 0.0
     ratios, omega = can.damping_ratios(), can.frequencies()
-    return float(np.max(2 * (ratios * omega + _BREAKING * omega[0] ** 2 / omega) / _bob_shares(can)))
+    rates = 2 * (ratios * omega + _BREAKING * omega[:1] ** 2 / omega) / _bob_shares(can)
+    return float(np.max(rates, initial=0.0))
 
 
 def _bob_shares(can: Standing) -> np.ndarray:
@@ -221,13 +201,12 @@ def _specification(can: Standing | Scene, visuals: bool = True) -> mujoco.MjSpec
     """Return the specification of a can that has no free joint yet."""
     if not isinstance(can, Scene):
         return standing_spec(require.instance("can", can, Standing), Setting(), visuals, free=False)
-    values = lying_parameters(can)
     root, path = _read("lying", Setting().folder)
     mjcf_file.remove(root, "freejoint")
     if can.attachment == "frozen":
         mjcf_file.remove(root, "joint[@name='swing']", "jointpos", "jointvel")
-    values |= {(f"body {each}", "euler"): (0, 0, 0) for each in ("incline", "can")}  # what it meets is the parent's
-    mjcf_file.write(root, values, path)
+    placed = ("body incline", "euler"), ("body can", "euler"), ("body can", "pos")
+    mjcf_file.write(root, lying_parameters(can) | dict.fromkeys(placed, (0.0, 0.0, 0.0)), path)
     return looks.to_spec(root, path, can, visuals)
 
 
@@ -239,12 +218,10 @@ def standing_spec(can: Standing, setting: Setting, visuals: bool, free: bool) ->
         mjcf_file.remove(root, "freejoint", "geom[@name='surface']")
     parents = [*root.iterfind(".//body[@name='can']"), *root.iterfind("sensor")]
     first = [(parent, each) for parent in parents for each in parent if "slosh1" in each.get("name", "")]
-    for mode in range(2, can.modes + 1):
-        for parent, each in first:
-            parent.append(ET.fromstring(ET.tostring(each, encoding="unicode").replace("slosh1", f"slosh{mode}")))
-    if can.modes == 0:
-        for parent, each in first:
-            parent.remove(each)
+    for parent, each in first:
+        parent.remove(each)
+        text = ET.tostring(each, encoding="unicode")
+        parent.extend(ET.fromstring(text.replace("slosh1", f"slosh{mode}")) for mode in range(1, can.modes + 1))
     options = {("option", "integrator"): integrator, ("option", "timestep"): (setting.timestep,)}
     mjcf_file.write(root, standing_parameters(can) | options, path)
     return looks.to_spec(root, path, can, visuals)
@@ -274,26 +251,23 @@ def standing_parameters(can: Standing) -> mjcf_file.Parameters:
         ("geom can", "pos"): (0, 0, half),
         **_inertial("can", shell.mass, half, (across, across, shell.inertia)),
     }
-    middle = can.height / 2
-    moments = can.fixed_moments()
-    lengths = can.gravity / can.frequencies() ** 2
-    critical = 2 * can.frequencies() * can.slosh_masses() * lengths**2
-    dampers = can.damping_ratios() * critical, _BREAKING / can.frequencies() ** 2 * critical
-    parts = can.slosh_masses(), lengths, can.pivots(), *dampers, can.elevations(), _bob_shares(can)
-    for number, each in enumerate(zip(*map(np.ndarray.tolist, parts), strict=True), 1):
-        mass, length, pivot, damper, cubic, rise, share = each
-        name, own = f"slosh{number}", share * mass * length**2
-        bob, arm = mass / (1 - share), length * (1 - share)
-        place = pivot - middle - arm
-        moments = moments - bob * place ** np.arange(3) - [0, 0, own]
-        found |= _inertial(name, bob, -arm, (own,) * 3)
+    middle, omega, share = can.height / 2, can.frequencies(), _bob_shares(can)
+    masses, pivots, lengths = can.slosh_masses(), can.pivots(), can.gravity / omega**2
+    critical = 2 * omega * masses * lengths**2
+    bobs, arms, spins = masses / (1 - share), lengths * (1 - share), share * masses * lengths**2
+    places = pivots - middle - arms
+    mass, first, second = can.fixed_moments() - [bobs.sum(), bobs @ places, bobs @ places**2 + spins.sum()]
+    dampers = can.damping_ratios() * critical, _BREAKING / omega**2 * critical
+    columns = bobs, arms, spins, pivots, *dampers, can.elevations()
+    for number, each in enumerate(np.transpose(columns).tolist(), 1):
+        name, (bob, arm, spin, pivot, damper, cubic, rise) = f"slosh{number}", each
+        found |= _inertial(name, bob, -arm, (spin,) * 3)
         found[f"body {name}", "pos"] = found[f"site {name}_pivot", "pos"] = 0, 0, pivot
         found[f"joint {name}", "damping"] = damper, 0, cubic
         found[f"site {name}_rise", "pos"] = 0, 0, -rise
-    mass, first, second = moments
     level = second - first**2 / mass
-    spin = can.mass * shell.radius**2 / 2 if can.modes == 0 else 1e-9 * level  # nothing drags the liquid along
-    return found | _inertial("liquid", mass, middle + first / mass, (level, level, spin))
+    axial = can.mass * shell.radius**2 / 2 if can.modes == 0 else 1e-9 * level  # nothing drags the liquid along
+    return found | _inertial("liquid", mass, middle + first / mass, (level, level, axial))
 
 
 def lying_parameters(scene: Scene) -> mjcf_file.Parameters:
@@ -305,10 +279,9 @@ def lying_parameters(scene: Scene) -> mjcf_file.Parameters:
         raise UnsupportedError(f"a can that is free in space has no drag of the air, got {scene.drag!r} kg/m")
     found: mjcf_file.Parameters = {("geom can", "size"): (shell.radius, shell.length / 2)}
     if scene.attachment == "sliding":
-        if shell.mass == 0 or shell.inertia == 0:
+        if shell.inertia == 0:
             raise UnsupportedError(
-                "a can without mass and inertia around a sliding load cannot move freely; give it some, as "
-                "can=Can.sheet_metal()"
+                "MuJoCo moves no can without inertia around a sliding load: give it some, as can=Can.sheet_metal()"
             )
         found["joint swing", "damping"] = tuple(scene.damping_law.coefficients)
     across = transverse_inertia(shell)
@@ -337,4 +310,4 @@ def transverse_inertia(can: Can) -> float:
     2 (m - I/a^2), or as much of that as there is.
     """
     ends = min(max(2 * (can.mass - can.inertia / can.radius**2), 0.0), can.mass)
-    return can.inertia / 2 + (can.mass - ends) * can.length**2 / 12 + ends * can.length**2 / 4
+    return can.inertia / 2 + (can.mass + 2 * ends) * can.length**2 / 12

@@ -28,7 +28,7 @@ def reset(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, phi0: float,
     """
     for name, given, kind in (("model", model, mujoco.MjModel), ("data", data, mujoco.MjData), ("scene", scene, Scene)):
         require.instance(name, given, kind)
-    values = _values(initial_coordinates(scene, *require.start(phi0, phi_dot0)))
+    values = _start_values(scene, *require.start(phi0, phi_dot0))
     joints = {model.joint(joint).name for joint in range(model.njnt)}
     if not joints & {"phi", "roll"}:
         raise ParameterError(f"the model must have the joints of a scene, got {require.format_value(sorted(joints))}")
@@ -46,7 +46,7 @@ def joint_addresses(model: mujoco.MjModel) -> dict[str, int]:
 
 def initial_joints(joints: Iterable[str], scene: Scene, phi0: float, phi_dot0: float) -> np.ndarray:
     """Return the positions and the rates of joints at a start, shape (2, joints); one that is not a scene's is at 0."""
-    values = _values(initial_coordinates(scene, phi0, phi_dot0))
+    values = _start_values(scene, phi0, phi_dot0)
     return np.array([values.get(name, (0.0, 0.0)) for name in joints]).T
 
 
@@ -63,12 +63,15 @@ def to_states(model: mujoco.MjModel, motion: Coordinates) -> np.ndarray:
     return states
 
 
-def initial_coordinates(scene: Scene, phi0: float, phi_dot0: float) -> Coordinates:
-    """Return a start, a motion whose coordinates are numbers and no arrays."""
-    (u, u_dot), radius = scene.start(phi0, phi_dot0), scene.can.radius
-    values: tuple[Any, ...] = 0.0, u, phi0, u_dot, phi_dot0, u / radius, u_dot / radius, -START_DEPTH * radius, 0.0
-    names = "time", "u", "phi", "u_dot", "phi_dot", "roll", "roll_dot", "lift", "lift_dot"
-    return Coordinates(**dict(zip(names, values, strict=True)))
+def rolling_coordinates(radius: float, u: Any, u_dot: Any, phi: Any, phi_dot: Any) -> Coordinates:
+    """Return the coordinates of a can that rolls without slipping, in contact; u is in [m], phi in [rad]."""
+    rates = {"u_dot": u_dot, "phi_dot": phi_dot, "roll_dot": u_dot / radius, "lift_dot": 0 * phi}
+    return Coordinates(time=0 * phi, u=u, phi=phi, roll=u / radius, lift=0 * phi - START_DEPTH * radius, **rates)
+
+
+def _start_values(scene: Scene, phi0: float, phi_dot0: float) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """Return the position and the rate at a start of all joints that a model may have, by name."""
+    return _values(rolling_coordinates(scene.can.radius, *scene.start(phi0, phi_dot0), phi0, phi_dot0))
 
 
 def _values(motion: Coordinates) -> dict[str, tuple[np.ndarray, np.ndarray]]:

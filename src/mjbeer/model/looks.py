@@ -7,7 +7,6 @@ import functools
 import math
 import pathlib
 import xml.etree.ElementTree as ET
-from collections.abc import Sequence
 
 import mujoco
 import numpy as np
@@ -26,10 +25,9 @@ INCLUDES = {
     "standing": {"can": ("upright",), "liquid": ("column",), "slosh1": ("top",)},
 }
 """What is included in each body, by the name of what is seen; a load that is no body of its own is in the can."""
-_NEEDED = (("camera", "side"), ("camera", "quarter"), ("camera", "overview"), ("mesh", "can"), ("material", "grid"))
-_ROLLING = (("geom", "load"), ("geom", "board"), ("geom", "wall"), ("material", "planks"))
-_UPRIGHT = (("geom", "beer"), ("geom", "can_wall"), ("geom", "can_end"))
-"""The elements that mjbeer addresses by name: in all looks, in those of a can that rolls, and of one that stands."""
+_NEEDED = {"camera": ("side", "quarter", "overview"), "mesh": ("can", "load"), "material": ("grid", "planks")}
+_ROLLING, _UPRIGHT = ("load", "board", "wall"), ("can_wall", "can_end")
+"""The elements that mjbeer addresses by name: in all looks, and geoms of a can that rolls, and of one that stands."""
 TURNING = ("can_mark", "can_spot", "can_tab", "can_mouth", "can_spokes")
 """The geoms that show how far the can has turned."""
 WALL = 0.06
@@ -49,9 +47,8 @@ def name(scene: Scene | Standing) -> str:
     """Return the name of a can's looks; a load without a fill is drawn as a ball."""
     if isinstance(scene, Standing):
         return "standing"
-    if scene.attachment == "sliding":
-        return "pendulum" if scene.load.fill is None else "sliding"
-    return "hoop" if scene.load.fill is None else "frozen"
+    filled, empty = ("sliding", "pendulum") if scene.attachment == "sliding" else ("frozen", "hoop")
+    return empty if scene.load.fill is None else filled
 
 
 def to_spec(root: ET.Element, path: pathlib.Path, can: Scene | Standing, visuals: bool) -> mujoco.MjSpec:
@@ -59,17 +56,23 @@ def to_spec(root: ET.Element, path: pathlib.Path, can: Scene | Standing, visuals
     if not visuals:
         return mjcf_file.to_spec(root, path)
     folder = path.parents[1]
-    include_looks(root, name(can), folder)
+    include_looks(root, name(can))
     spec = mjcf_file.to_spec(root, path)
+    geoms = (*_UPRIGHT, *beer_column(can)) if isinstance(can, Standing) else _ROLLING
+    for kind, names in {**_NEEDED, "geom": geoms}.items():
+        for each in names:
+            if getattr(spec, kind)(each) is None:
+                raise TemplateError(f"{folder / 'looks'} has no {kind} named {each!r}, which mjbeer uses; restore it")
+    _fit_sizes(spec, can.can, folder / "assets")
     if isinstance(can, Standing):
-        _fit_to_standing(spec, can, folder)
+        _fit_to_standing(spec, can)
     else:
-        _fit_to_scene(spec, can, folder)
+        _fit_to_scene(spec, can)
     return spec
 
 
-def include_looks(root: ET.Element, what: str, folder: pathlib.Path) -> None:
-    """Include the looks of INCLUDES in the bodies of a mechanics file of a folder; its own geoms are then in group 3.
+def include_looks(root: ET.Element, what: str) -> None:
+    """Include the looks of INCLUDES in the bodies of a mechanics file; its own geoms are then in group 3.
 
     A geom without a name, which shows where the load is in a file without looks, goes.
     """
@@ -80,39 +83,25 @@ def include_looks(root: ET.Element, what: str, folder: pathlib.Path) -> None:
     for geom in root.iter("geom"):
         geom.attrib |= {"group": "3", "class": "main"}
     root.insert(0, ET.Element("include", file="looks/world.xml"))
+    bodies = {body.get("name", ""): body for body in root.iter("body")}
+    bodies.setdefault("load", bodies["can"])
     for body, files in INCLUDES[what].items():
-        parent = root.find(f".//body[@name='{body}']")
-        if parent is None and body == "load":
-            parent = root.find(".//body[@name='can']")
-        if parent is None:
+        if (parent := bodies.get(body)) is None:  # as "slosh1" of a can without modes
             continue
         parent.set("childclass", "visual")
         place = next((place for place, each in enumerate(parent) if each.tag == "body"), len(parent))
         parent[place:place] = [ET.Element("include", file=f"looks/{file}.xml") for file in files]
-    can, incline = (root.find(f".//body[@name='{name}']") for name in ("can", "incline"))
-    if can is not None and incline is not None:
-        can.extend(_level_cameras(folder / "looks" / "cameras.xml", float(incline.get("euler", "0 0 0").split()[1])))
     if what == "standing":
         ET.SubElement(ET.SubElement(root, "worldbody"), "include", file="looks/floor.xml")
+    else:  # cameras are level, in a frame that turns back by the incline
+        angle = float(bodies["incline"].get("euler", "0 0 0").split()[1])
+        frame = ET.SubElement(bodies["can"], "frame", euler=f"0 {0 - angle:.17g} 0")
+        ET.SubElement(frame, "include", file="looks/cameras.xml")
 
 
-def _level_cameras(path: pathlib.Path, angle: float) -> ET.Element:
-    """Return the cameras of a file, for a body that is turned by an `angle` [degrees] about the y axis."""
-    cameras, along, up = mjcf_file.read(path), math.cos(math.radians(angle)), math.sin(math.radians(angle))
-    back = np.array([[along, 0, -up], [0, 1, 0], [up, 0, along]])
-    for camera in cameras:
-        for name in ("pos", "xyaxes"):
-            if name not in camera.attrib:
-                raise TemplateError(f"{path} has a camera without {name}, which mjbeer turns with the incline")
-            vectors = np.array(camera.attrib[name].split(), float).reshape(-1, 3) @ back.T
-            camera.set(name, " ".join(f"{each:.12g}" for each in vectors.ravel()))
-    return cameras
-
-
-def _fit_to_scene(spec: mujoco.MjSpec, scene: Scene, folder: pathlib.Path) -> None:
-    """Fit what is drawn to the sizes of a scene."""
-    _fit_sizes(spec, scene.can, folder, (*_ROLLING, *(("mesh", "load"),) * (scene.load.fill is not None)))
-    if scene.attachment == "sliding" and spec.joint("phi") is not None:  # no joint turns with the can
+def _fit_to_scene(spec: mujoco.MjSpec, scene: Scene) -> None:
+    """Draw the load of a scene, and nothing that turns with a can that has no joint."""
+    if scene.attachment == "sliding" and spec.joint("phi") is not None:
         for geom in filter(None, map(spec.geom, TURNING)):
             spec.delete(geom)
     draw_load = _place_point_load if scene.load.fill is None else shape_beer
@@ -123,10 +112,9 @@ def _fit_to_scene(spec: mujoco.MjSpec, scene: Scene, folder: pathlib.Path) -> No
             spec.delete(mesh)
 
 
-def _fit_to_standing(spec: mujoco.MjSpec, standing: Standing, folder: pathlib.Path) -> None:
+def _fit_to_standing(spec: mujoco.MjSpec, standing: Standing) -> None:
     """Fit what is drawn to a standing can: a column of beer under a cylinder that tilts with the body "slosh1"."""
-    _fit_sizes(spec, standing.can, folder, (*_UPRIGHT, *(("geom", "beer_top"),) * (standing.modes > 0)))
-    for each in ("can_wall", "can_end"):
+    for each in _UPRIGHT:
         spec.geom(each).pos = [0, 0, standing.can.length / 2]
     for each, (low, high, radius) in beer_column(standing).items():
         spec.geom(each).pos = [0, 0, (low + high) / 2]
@@ -143,20 +131,15 @@ def beer_column(standing: Standing) -> dict[str, tuple[float, float, float]]:
     if standing.modes == 0:
         return {"beer": (0.0, height, radius)}
     pivot, thickness = standing.pivots(1)[0], min(0.2 * radius, height / 4)
-    top = height - pivot
-    bottom, ball = min(-top, top - thickness), min(radius, pivot, length - pivot)
-    if ball <= max(top, -bottom):
-        dot = 1e-4 * radius
+    top, ball, dot = height - pivot, min(radius, pivot, length - pivot), 1e-4 * radius
+    depth = max(top, thickness - top)  # of its lower face below the pivot
+    if ball <= depth:
         return {"beer": (0.0, height, radius), "beer_top": (-dot, dot, dot)}
-    wide = math.sqrt(ball**2 - max(top, -bottom) ** 2)
-    return {"beer": (0.0, height - thickness, radius), "beer_top": (bottom, top, wide)}
+    return {"beer": (0.0, height - thickness, radius), "beer_top": (-depth, top, math.sqrt(ball**2 - depth**2))}
 
 
-def _fit_sizes(spec: mujoco.MjSpec, can: Can, folder: pathlib.Path, needed: Sequence[tuple[str, str]]) -> None:
-    """Fit what is drawn to the sizes of a can; it must have what is needed, by kind and name."""
-    for kind, each in (*_NEEDED, *needed):
-        if getattr(spec, kind)(each) is None:
-            raise TemplateError(f"{folder / 'looks'} has no {kind} named {each!r}, which mjbeer uses; restore it")
+def _fit_sizes(spec: mujoco.MjSpec, can: Can, assets: pathlib.Path) -> None:
+    """Fit what is drawn to the sizes of a can."""
     size = can.radius / RADIUS
     stretch = np.array([size, can.length / LENGTH, size])
     for geom in spec.geoms:
@@ -165,26 +148,25 @@ def _fit_sizes(spec: mujoco.MjSpec, can: Can, folder: pathlib.Path, needed: Sequ
             geom.size = geom.size * (stretch if geom.type == mujoco.mjtGeom.mjGEOM_BOX else size)
     for camera in spec.cameras:  # as many radii from the can's near end
         camera.pos = size * camera.pos - [0, (can.length - size * LENGTH) / 2, 0]
-    grid = spec.material("grid")
-    grid.texrepeat = np.array(grid.texrepeat) / size
-    spec.stat.extent, spec.stat.center = spec.stat.extent * size, np.array(spec.stat.center) * size
+    spec.material("grid").texrepeat /= size
+    spec.stat.extent *= size
+    spec.stat.center *= size
     for mesh in spec.meshes:
-        path = folder / "assets" / mesh.file
-        try:
-            vertices, faces, mesh.usertexcoord = _shape(path, path.stat().st_mtime_ns)
-        except (OSError, ValueError) as error:
-            raise TemplateError(f"{path} is no mesh that MuJoCo can read: {error}") from error
+        vertices, faces, mesh.usertexcoord = _shape(assets / mesh.file)
         _reshape(mesh, (vertices * mesh.scale * stretch, faces))
     spec.meshdir = ""
 
 
 @functools.lru_cache(maxsize=32)
-def _shape(path: pathlib.Path, _changed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _shape(path: pathlib.Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return vertices, faces, and places in a texture as one row, of a mesh, as MuJoCo reads them from a file."""
     spec = mujoco.MjSpec()
     spec.add_mesh(name="mesh", file=str(path.resolve()), inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL)
     spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname="mesh")
-    model, turned = spec.compile(), np.zeros(9)
+    try:
+        model, turned = spec.compile(), np.zeros(9)
+    except ValueError as error:
+        raise TemplateError(f"{path} is no mesh that MuJoCo can read: {error}") from error
     mujoco.mju_quat2Mat(turned, model.mesh_quat[0])  # MuJoCo keeps it along its principal axes
     vertices = model.mesh_vert @ turned.reshape(3, 3).T + model.mesh_pos[0]
     return vertices, model.mesh_face.copy(), model.mesh_texcoord.astype(float).ravel()
@@ -223,9 +205,8 @@ def shape_beer(spec: mujoco.MjSpec, scene: Scene, edges: int = EDGES) -> None:
         heights = 2 * fill - 1 + thickness * np.array([0, 0, 1, 1])
         across = np.sqrt((1 - heights) * (1 + heights)) * [-1, 1, 1, -1]
         _reshape(foam, _prism(radius * np.stack([across, heights], axis=1), length))
-    else:
-        for element in filter(None, (spec.geom("foam"), foam)):
-            spec.delete(element)
+    elif (drawn := spec.geom("foam")) is not None:
+        spec.delete(drawn)
 
 
 def beer(fill: float, radius: float, length: float, edges: int = EDGES) -> Mesh:

@@ -5,6 +5,7 @@ element and attribute of MJCF, as `mjcf/README.md` lists them.
 """
 
 import math
+import pathlib
 from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -18,13 +19,9 @@ from mjbeer.theory.scene import Scene
 Structure: TypeAlias = tuple[Hashable, ...]
 """What decides which elements and flags a model has."""
 
-_FORCES_SEEN = 2.0**60
-"""Factor of all masses where "discrete" meets the damping of a tendon. It then iterates, and takes forces below 3e-8
-[N, N m] for none: a load let go 1e-6 rad beside the top would stay there for ever."""
 _TOLERANCE = 1e-14
-"""The solver's tolerance over the square of gravity: it ends once an iteration gains less than that, and what moves the
-load must be more. MuJoCo's own 1e-8 m^2/s^4 takes the weight of a light load for nothing. One more iteration of
-Newton's method brings all digits, and 1e-14 costs none in the four scenes; 1e-18 costs a third of the run time."""
+"""The solver's tolerance over the square of gravity: it ends once an iteration gains less. MuJoCo's own 1e-8 m^2/s^4
+takes the weight of a light load for nothing. 1e-14 costs no time in the four scenes; 1e-18 costs a third of it."""
 
 
 class Inertial(NamedTuple):
@@ -35,48 +32,30 @@ class Inertial(NamedTuple):
     inertia: float
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Mechanics:
     """The numbers of a scene in a setting."""
 
     scene: Scene
     setting: Setting
-    timestep: float
-    """Timestep of MuJoCo, to which constraints are fitted [s]."""
-    tilted: bool
-    """Whether gravity is tilted instead of the incline."""
-    unit: float
-    """Factor of all masses and forces."""
-    bodies: Mapping[str, Inertial]
-    """The bodies that have mass, by name."""
+    visuals: bool = False
+    """Whether the incline is tilted, as it is seen, or gravity instead."""
+    timestep: float | None = None
+    """Timestep of MuJoCo, to which constraints are fitted [s], if it is not the setting's."""
 
-    @classmethod
-    def of(cls, scene: Scene, setting: Setting, visuals: bool = False, timestep: float | None = None) -> "Mechanics":
-        """Return the numbers of a scene in a setting; a model with visuals keeps its masses and an upright gravity.
-
-        A `timestep` [s] is instead of the setting's.
-        """
-        reduced = setting.rolling == "reduced"
-        iterated = reduced and setting.integrator == "discrete" and scene.damping_law and not visuals
-        unit = _FORCES_SEEN if iterated else 1.0
-        if not reduced:
-            found = _constrained(scene)
-        else:
-            # Of a sliding load the can's mass is on the same body, as a point on the axis: eqs. (39) and (44).
-            found = {"can": _load_with(scene, scene.can.mass) if scene.attachment == "sliding" else _frozen(scene)}
-        return cls(
-            scene=scene,
-            setting=setting,
-            timestep=timestep or setting.timestep,
-            tilted=not visuals,
-            unit=unit,
-            bodies={name: Inertial(unit * each.mass, each.offset, unit * each.inertia) for name, each in found.items()},
-        )
+    @cached_property
+    def bodies(self) -> Mapping[str, Inertial]:
+        """Return the bodies that have mass, by name."""
+        scene = self.scene
+        if self.setting.rolling != "reduced":
+            return _constrained(scene)
+        # Of a sliding load the can's mass is on the same body, as a point on the axis: eqs. (39) and (44).
+        return {"can": _load_with(scene, scene.can.mass) if scene.attachment == "sliding" else _frozen(scene)}
 
     @property
-    def file(self) -> str:
-        """Return the name of the mechanics file, without its folder and ending."""
-        return f"{self.scene.attachment}_{self.setting.rolling}"
+    def path(self) -> pathlib.Path:
+        """Return the path of the mechanics file."""
+        return self.setting.folder / "mechanics" / f"{self.scene.attachment}_{self.setting.rolling}.xml"
 
     @property
     def acting(self) -> tuple[str, ...]:
@@ -88,22 +67,29 @@ class Mechanics:
     @cached_property
     def structure(self) -> Structure:
         """Return what decides which elements and flags the model has."""
-        return self.setting.folder, self.file, self.acting, self.scene.dissipates
+        scene, setting = self.scene, self.setting
+        return setting.folder, setting.rolling, scene.attachment, self.acting, scene.dissipates
 
     @cached_property
     def parameters(self) -> Parameters:
         """Return what is written into the mechanics file, by element and attribute."""
         scene, setting, radius = self.scene, self.setting, self.scene.can.radius
         alpha, g, contact = scene.incline, scene.gravity, setting.rolling == "contact"
+        timestep, integrator = self.timestep or setting.timestep, setting.integrator
+        if integrator in OWN:
+            integrator = "RK4"  # which is not used: they step by themselves
+        elif integrator == "discrete" and setting.rolling == "reduced" and scene.damping_law:
+            # It takes the same steps, but solves for them by iteration, to which forces below 3e-8 [N, N m] are none: a
+            # load let go 1e-6 rad beside the top would stay there for ever.
+            integrator = "implicitfast"
         # With the axis at the origin, an offset far smaller than the radius keeps its digits. Only a can that is seen,
         # or in contact, must lie on the incline.
-        height = radius if contact or not self.tilted else 0.0
+        height = radius if contact or self.visuals else 0.0
         found: Parameters = {
-            ("option", "timestep"): (self.timestep,),
-            # mjbeer's own integrators step by themselves
-            ("option", "integrator"): "RK4" if setting.integrator in OWN else setting.integrator,
-            ("option", "gravity"): (g * math.sin(alpha), 0, -g * math.cos(alpha)) if self.tilted else (0, 0, -g),
-            ("body incline", "euler"): (0, 0 if self.tilted else math.degrees(alpha), 0),
+            ("option", "timestep"): (timestep,),
+            ("option", "integrator"): integrator,
+            ("option", "gravity"): (0, 0, -g) if self.visuals else (g * math.sin(alpha), 0, -g * math.cos(alpha)),
+            ("body incline", "euler"): (0, math.degrees(alpha) if self.visuals else 0, 0),
             ("body can", "pos"): (0, 0, height),
         }
         for name, body in self.bodies.items():
@@ -111,12 +97,12 @@ class Mechanics:
             found[f"inertial {name}", "pos"] = 0, 0, -body.offset
             found[f"inertial {name}", "diaginertia"] = (body.inertia,) * 3
         if scene.attachment == "sliding":
-            found["joint slide", "damping"] = 0, self.unit * scene.drag, 0
+            found["joint slide", "damping"] = 0, scene.drag, 0
             damper = "fixed damper" if setting.rolling == "reduced" else "joint swing"
-            found[damper, "damping"] = tuple(self.unit * each for each in scene.damping_law.coefficients)
+            found[damper, "damping"] = tuple(scene.damping_law.coefficients)
         if setting.rolling == "reduced":
             if scene.attachment == "sliding":
-                found["joint slide", "armature"] = (self.unit * scene.can.inertia / radius**2,)
+                found["joint slide", "armature"] = (scene.can.inertia / radius**2,)
                 found["fixed damper/slide", "coef"] = (-1 / radius,)
             else:
                 found["general weight", "biasprm"] = (scene.oscillator.ramp,)
@@ -126,14 +112,14 @@ class Mechanics:
             return found
         found["fixed slip/roll", "coef"] = (-radius,)
         rolling = "pair rolling" if contact else "joint rolling"
-        found[rolling, "solref"] = stiffest(setting.integrator, self.timestep, contact), 1
+        found[rolling, "solref"] = stiffest(setting.integrator, timestep, contact), 1
         if contact:
             found[rolling, "friction"] = setting.friction, setting.friction, 0.005, 1e-4, 1e-4
             found["geom can", "size"] = radius, scene.can.length / 2
             # What the weight of the load gains, over what that of all masses gains: a force squared over an inertia. At
             # a tolerance of 0 the solver would spend all its iterations on rounding.
             light = scene.load.moment**2 / (scene.mass * float(scene.oscillator.inertia(math.pi / 2)))
-            found["option", "tolerance"] = (_TOLERANCE * min(1.0, max(light, 1e-10)) * max(g, 1e-5) ** 2,)
+            found["option", "tolerance"] = (_TOLERANCE * max(light, 1e-10) * max(g, 1e-5) ** 2,)
         else:
             found[rolling, "polycoef"] = 0, radius, 0, 0, 0
         return found
@@ -156,14 +142,11 @@ def _frozen(scene: Scene) -> Inertial:
 
     The file says how. The arms of the chord are 1 m long; any length gives the same inertia.
     """
-    oscillator, moment = scene.oscillator, scene.load.moment
+    base, moment = scene.oscillator.base, scene.load.moment
     # Any mass with the moment m b is right: the scene's at its centre of mass (38), or, where that has more than half
-    # of the inertia, a larger mass on a shorter arm that has exactly half.
-    mass = scene.mass
-    offset = moment / mass
-    if mass * offset**2 > oscillator.base / 2:
-        mass, offset = 2 * moment**2 / oscillator.base, oscillator.base / (2 * moment)
-    return Inertial(mass, offset, oscillator.base - mass * offset**2)
+    # of the inertia, a larger mass on a shorter arm that has half.
+    mass = max(scene.mass, 2 * moment**2 / base)
+    return Inertial(mass, moment / mass, base - moment**2 / mass)
 
 
 def _constrained(scene: Scene) -> dict[str, Inertial]:

@@ -2,10 +2,10 @@
 
 import copy
 import functools
-import math
 import pathlib
 import xml.etree.ElementTree as ET
 from collections.abc import Callable, Collection
+from contextlib import suppress
 from typing import TypeAlias
 
 import mujoco
@@ -71,8 +71,7 @@ def differences(root: ET.Element, values: Parameters) -> list[str]:
         if isinstance(value, str):
             same = words == [value]
         else:
-            pairs = zip(words, value, strict=False)
-            same = len(words) == len(value) and all(math.isclose(float(w), v, rel_tol=1e-11) for w, v in pairs)
+            same = len(words) == len(value) and np.allclose(np.array(words, float), value, rtol=1e-11, atol=0)
         if not same:
             found.append(f"{name} {attribute}")
     return found
@@ -116,8 +115,12 @@ _COMPILED: dict[tuple[str, str], Callable[[mujoco.MjModel, str], list[np.ndarray
     ("inertial", "pos"): lambda model, name: [model.body(name).ipos],
     ("inertial", "diaginertia"): lambda model, name: [model.body(name).inertia],
     ("joint", "armature"): lambda model, name: [model.joint(name).armature],
-    ("joint", "damping"): lambda model, name: _parts(model, "dof", int(model.joint(name).dofadr[0])),
-    ("fixed", "damping"): lambda model, name: _parts(model, "tendon", model.tendon(name).id),
+    # in proportion to a rate, and with higher powers
+    ("joint", "damping"): lambda model, name: [model.joint(name).damping, model.joint(name).dampingpoly[0]],
+    ("fixed", "damping"): lambda model, name: [
+        model.tendon_damping[model.tendon(name).id :][:1],
+        model.tendon_dampingpoly[model.tendon(name).id],
+    ],
     ("fixed", "coef"): lambda model, name: [_coefficient(model, *name.split("/"))],
     ("spatial", "armature"): lambda model, name: [model.tendon_armature[model.tendon(name).id :][:1]],
     ("general", "biasprm"): lambda model, name: [model.actuator(name).biasprm[:1]],
@@ -127,11 +130,6 @@ _COMPILED: dict[tuple[str, str], Callable[[mujoco.MjModel, str], list[np.ndarray
     ("pair", "friction"): lambda model, name: [model.pair(name).friction],
     ("geom", "size"): lambda model, name: [model.geom(name).size[:2]],
 }
-
-
-def _parts(model: mujoco.MjModel, kind: str, number: int) -> list[np.ndarray]:
-    """Return the places of damping in proportion to a rate, and of that with higher powers."""
-    return [getattr(model, f"{kind}_damping")[number : number + 1], getattr(model, f"{kind}_dampingpoly")[number]]
 
 
 def _coefficient(model: mujoco.MjModel, tendon: str, joint: str) -> np.ndarray:
@@ -146,11 +144,8 @@ def compiled_views(model: mujoco.MjModel, values: Parameters) -> Views:
     found = {}
     for element, attribute in values:
         tag, _, name = element.partition(" ")
-        if place := _COMPILED.get((tag, attribute)):
-            try:
-                found[element, attribute] = place(model, name)
-            except KeyError:  # it was left out, as it is 0 in all scenes of this kind
-                continue
+        with suppress(KeyError):  # of an option, and of what was left out, as it is 0 in all scenes of this kind
+            found[element, attribute] = _COMPILED[tag, attribute](model, name)
     return found
 
 

@@ -62,14 +62,13 @@ class Setting:
         )
         if self.integrator == "GaussJackson" and self.rolling != "reduced":
             raise ParameterError(
-                "GaussJackson would be unstable with a constraint: rolling must be 'reduced' with it, got "
-                f"{self.rolling!r}; DOP853 takes any"
+                f"GaussJackson takes no constraint: rolling must be 'reduced' with it, got {self.rolling!r}; "
+                "DOP853 takes any"
             )
         if self.tolerance is not None and self.rolling == "contact":
             raise ParameterError(
-                "a contact is soft, and so is wrong by what no integrator shows: with a tolerance rolling must be "
-                f"'reduced' or 'equality', got 'contact' and {self.tolerance!r} rad; a contact is the harder, the "
-                "shorter its timestep is, and error_estimate says how good it is"
+                "a contact is soft, which no tolerance covers: rolling must be 'reduced' or 'equality' with one, "
+                f"got 'contact' and {self.tolerance!r} rad; take a short timestep, and see error_estimate"
             )
 
     @classmethod
@@ -77,10 +76,7 @@ class Setting:
         """Return the setting of a call that gives an integrator or a tolerance, which chooses its own, or neither."""
         setting = cls(integrator=cls.integrator if integrator is None else integrator, tolerance=tolerance, **fields)
         if tolerance is not None and integrator is not None:
-            raise ParameterError(
-                "give a tolerance or an integrator: a tolerance chooses the integrator that keeps it, got integrator "
-                f"{integrator!r}"
-            )
+            raise ParameterError(f"a tolerance chooses the integrator itself: give one of both, got {integrator!r} too")
         return setting
 
 
@@ -91,8 +87,7 @@ def supported(scene: Scene, rolling: str) -> bool:
 
 def mjcf_folder(own: str | os.PathLike[str] | None = None) -> pathlib.Path:
     """Return the folder of the MJCF: one's `own`, or that of the environment, or mjbeer's."""
-    if own is None and (own := os.environ.get("MJBEER_MJCF")) is None:
-        return _SHIPPED
-    if not isinstance(own, (str, os.PathLike)) or not os.path.isdir(own):
-        raise ParameterError(f"mjcf must be a folder with mechanics and looks in it, got {require.format_value(own)}")
-    return pathlib.Path(own)
+    folder = os.environ.get("MJBEER_MJCF", _SHIPPED) if own is None else own
+    if not isinstance(folder, (str, os.PathLike)) or not os.path.isdir(folder):
+        raise ParameterError(f"mjcf must be a folder of mechanics and looks, got {require.format_value(folder)}")
+    return pathlib.Path(folder)

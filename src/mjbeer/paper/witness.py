@@ -9,8 +9,7 @@ import numpy as np
 
 from mjbeer.model.build import build
 from mjbeer.model.joints import joint_addresses, to_states
-from mjbeer.model.mechanics import Mechanics
-from mjbeer.model.setting import Integrator, Rolling, Setting, supported
+from mjbeer.model.setting import Integrator, Rolling, supported
 from mjbeer.paper.claim import Bound, Seen, Witness
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import Can, Load
@@ -48,8 +47,7 @@ def watch(
     times = np.linspace(0, duration, samples)
     run = simulate(scene, duration, phi0, phi_dot0, rolling, integrator, timestep, times=times)
     model = build(scene, rolling, integrator="DOP853", timestep=timestep)
-    data, unit = mujoco.MjData(model), Mechanics.of(scene, Setting(rolling, "DOP853", timestep)).unit
-    names, can = joint_addresses(model), model.body("can").id
+    data, names, can = mujoco.MjData(model), joint_addresses(model), model.body("can").id
     carrier = model.body("load").id if "swing" in names else can
     axis, load = np.empty((2, samples, 3, 3))
     phi_dot, phi_ddot, potential, kinetic, friction = np.zeros((5, samples))
@@ -64,9 +62,9 @@ def watch(
         turn = np.zeros((3, model.nv))
         mujoco.mj_jac(model, data, None, turn, data.xpos[carrier], carrier)
         phi_dot[k], phi_ddot[k] = turn[1] @ data.qvel, turn[1] @ data.qacc
-        potential[k], kinetic[k] = data.energy / unit
+        potential[k], kinetic[k] = data.energy
         if "slide" in names:
-            friction[k] = -data.qfrc_constraint[model.joint("slide").dofadr[0]] / unit
+            friction[k] = -data.qfrc_constraint[model.joint("slide").dofadr[0]]
     down, start = model.opt.gravity / scene.gravity, axis[0, 0, 2]
     arm, side = load[:, 0] - axis[:, 0], np.array([-down[2], 0, down[0]])  # a quarter turn from gravity, downhill
     coordinates = {"s": load[:, :, 0], "u": axis[:, :, 0], "across": load[:, :, 2] - axis[:, :, 2]}

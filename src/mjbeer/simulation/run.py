@@ -139,7 +139,7 @@ def _mechanics(scene: Scene, setting: Setting, uneven: bool = False) -> Mechanic
     timestep = setting.timestep * (_GOLDEN_SECTION if uneven else 1)
     if setting.tolerance is not None and setting.rolling == "equality" and scene.gravity > 0:
         timestep = math.sqrt(scene.can.radius / scene.gravity) / 2
-    return Mechanics.of(scene, setting, timestep=timestep)
+    return Mechanics(scene, setting, timestep=timestep)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
