@@ -49,14 +49,14 @@ def build(
 
     With `visuals` the incline is tilted and gravity is upright. Without them gravity is tilted instead: x is downhill
     and z away from the incline. That model has no geoms but those in contact, and the stages of a step that it does not
-    need are disabled. Begin a loop of your own with `mjbeer.reset`: at zero coordinates a can hardly touches.
+    need are disabled. Begin a loop of your own with `mjbeer.reset`: in a new MjData a can in contact hardly touches.
 
     The joints are "slide" (u), "lift" (contact only), "roll" and, for a sliding load, "swing" relative to the can; a
-    reduced model has "slide" and "phi", or "phi" alone for a frozen load. With damping it has "implicitfast" for
-    "discrete", which takes the same steps but does not see small forces.
+    reduced model has "slide" and "phi", or "phi" alone for a frozen load. With damping it has "implicitfast" instead of
+    "discrete": their steps are the same here, but "discrete" takes small forces for none.
 
-    A `standing` can stands on a floor, on a free joint; without `free`, which it alone may lack, it is held by the
-    world. It has no `rolling`, `friction`, `phi0` and `phi_dot0`.
+    A `standing` can stands on a floor, on a free joint; with `free=False`, which no other can has, the world holds it.
+    It has no `rolling`, `friction`, `phi0` and `phi_dot0`.
 
     `mjcf` is a folder to be read instead of mjbeer's own; without it, that of the environment variable MJBEER_MJCF
     counts. All but the parameters that its README lists is in the model as it stands there. If it then moves otherwise
