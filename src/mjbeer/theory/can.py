@@ -164,14 +164,14 @@ def segment(fill: float) -> Segment:
     sine = 2 * math.sqrt(fill * (1 - fill))  # 1 - fill is exact wherever it is small
     angle = beta / 2 * (1 + _NODES)
     across = np.sin(angle)
-    strip = beta * _WEIGHTS * across**2
+    strip = _WEIGHTS * (across / beta) ** 2  # divided by beta^3, which is tiny if the can is almost empty
     below = 2 * np.sin(angle / 2) ** 2  # 1 - cos(angle): depth under the top of the circle
-    area = float(strip.sum())
-    offset = 2 * sine**3 / (3 * area)
-    height = float(strip @ below) / area - below  # strip's y minus the centroid's
-    width = float(strip @ across**2) / (3 * area)
-    inertia = width + float(strip @ height**2) / area
-    return Segment(half_angle=beta, area=area, offset=offset, inertia=inertia, width=width)
+    total = float(strip.sum())
+    offset = 2 * (sine / beta) ** 3 / (3 * total)
+    height = float(strip @ below) / total - below  # strip's y minus the centroid's
+    width = float(strip @ across**2) / (3 * total)
+    inertia = width + float(strip @ height**2) / total
+    return Segment(half_angle=beta, area=beta**3 * total, offset=offset, inertia=inertia, width=width)
 
 
 @dataclass(frozen=True)
