@@ -162,7 +162,7 @@ def segment(fill: float) -> Segment:
     sine = 2 * math.sqrt(fill * (1 - fill))  # 1 - fill is exact wherever it is small
     angle = beta / 2 * (1 + _NODES)
     across = np.sin(angle)
-    strip = _WEIGHTS * (across / beta) ** 2  # divided by beta^3, which may underflow
+    strip = _WEIGHTS * (across / beta) ** 2  # divided by beta^3, which is tiny if the can is almost empty
     below = 2 * np.sin(angle / 2) ** 2  # 1 - cos(angle): depth under the top of the circle
     total = float(strip.sum())
     offset = 2 * (sine / beta) ** 3 / (3 * total)
