@@ -183,7 +183,8 @@ class Trajectory(Coordinates):
         """Return the motion in one line; whether it is trusted is not in it, as that may take a second run."""
         kind = f"{type(self).__name__} {self.scene.attachment}, {self.rolling}, {self.integrator}"
         end = f"t = {self.time[-1]:.6g} s, phi = {self.phi[-1]:.6g} rad, u = {self.u[-1]:.6g} m"
-        return f"<{kind}: {len(self.time)} samples to {end}>"
+        samples = f"{len(self.time)} sample{'s' if len(self.time) != 1 else ''}"
+        return f"<{kind}: {samples} to {end}>"
 
 
 def exact(scene: Scene, time: ArrayLike, phi0: float, phi_dot0: float = 0.0) -> Trajectory:
