@@ -10,7 +10,7 @@ import pytest
 
 from mjbeer import exact, frozen, hoop, liquid, simulate, sliding
 from mjbeer.cli.motions import Summary
-from mjbeer.simulation.run import Run
+from mjbeer.simulation.simulate import Run
 
 # Let go with the beer on top, the can hops at 0.834 s; before, rolling needs ever more friction, 1.839 within 0.8 s.
 START, SHORT, LONG = math.pi, 0.8, 0.9

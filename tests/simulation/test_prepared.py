@@ -8,8 +8,8 @@ import pytest
 from mjbeer import frozen, pendulum, sliding
 from mjbeer.exceptions import DivergenceError, ToleranceError
 from mjbeer.model.setting import Setting
-from mjbeer.simulation import run
-from mjbeer.simulation.run import Simulator
+from mjbeer.simulation import simulator as simulators
+from mjbeer.simulation.simulator import Simulator
 from tests.support.scenes import METAL
 
 SETTINGS = [
@@ -33,11 +33,11 @@ def bits(simulator: Simulator) -> bytes:
 
 @pytest.mark.parametrize("setting", SETTINGS, ids=repr)
 def test_what_was_done_before_leaves_no_trace(setting: Setting) -> None:
-    vars(run._kept).clear()
+    vars(simulators._kept).clear()
     for scene in (*SCENES * 2, *DAMPED * 2):  # with damping and drag, and then without
         for _ in range(2):  # the second time the model has the scene's numbers already
             assert bits(Simulator.kept(scene, setting)) == bits(Simulator(scene, setting))
-    assert len(run._kept.simulators) < len(SCENES)
+    assert len(simulators._kept.simulators) < len(SCENES)
 
 
 def test_each_thread_has_its_own() -> None:

@@ -15,7 +15,7 @@ from mjbeer.cli.app import parse
 from mjbeer.cli.motions import trajectory_of
 from mjbeer.exceptions import AngleWarning, DivergenceError, LiquidWarning, ParameterError, UntrustedWarning
 from mjbeer.model.setting import INTEGRATORS, ROLLINGS
-from mjbeer.simulation.run import Simulator
+from mjbeer.simulation.simulator import Simulator
 from mjbeer.theory.trajectory import distance
 from tests.support.scenes import METAL, SCENES, error
 

@@ -18,7 +18,7 @@ from mjbeer.integrators.dynamics import Dynamics
 from mjbeer.model.build import build
 from mjbeer.model.joints import to_coordinates
 from mjbeer.simulation import tolerance as tolerances
-from mjbeer.simulation.run import Run
+from mjbeer.simulation.simulate import Run
 from mjbeer.theory.can import Damping
 from mjbeer.theory.equations import accelerations
 from mjbeer.theory.scene import relaxation_rate

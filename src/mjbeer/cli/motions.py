@@ -22,7 +22,7 @@ from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import csv
 
 if TYPE_CHECKING:
-    from mjbeer.simulation.run import Run
+    from mjbeer.simulation.simulate import Run
 
 KeyFigure = tuple[str, Any, str, str]  # a name, a value, its unit, and how text shows it: as a format, or in words
 

@@ -14,7 +14,7 @@ import numpy as np
 from mjbeer import require
 from mjbeer.exceptions import DivergenceError, MjbeerError, ParameterError, ToleranceError, warn_of_liquid
 from mjbeer.model.setting import Setting
-from mjbeer.simulation.run import Run, integrate
+from mjbeer.simulation.simulate import Run, integrate
 from mjbeer.theory.scene import Scene
 
 _PIECE, _LARGEST_PIECE = 0.25, 256

@@ -21,8 +21,7 @@ from mjbeer import require
 from mjbeer.drawing.words import in_words
 from mjbeer.exceptions import MjbeerError, ParameterError
 from mjbeer.output import terminal
-from mjbeer.simulation.run import Run
-from mjbeer.simulation.simulate import simulate
+from mjbeer.simulation.simulate import Run, simulate
 from mjbeer.theory.scene import Scene
 from mjbeer.tracks.track import Track
 

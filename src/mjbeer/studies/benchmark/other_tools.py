@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mjbeer.model.setting import Setting
-from mjbeer.simulation.run import integrate as simulate
+from mjbeer.simulation.simulate import integrate as simulate
 from mjbeer.theory.scene import Scene
 
 RightHandSide = Callable[[float, Sequence[Any]], tuple[Any, ...]]

@@ -20,7 +20,7 @@ from mjbeer.model.joints import initial_state, to_coordinates
 from mjbeer.model.setting import INTEGRATORS, ROLLINGS, Setting, supported
 from mjbeer.output.terminal import progress_bar
 from mjbeer.simulation.fixed_step import states_after
-from mjbeer.simulation.run import Simulator
+from mjbeer.simulation.simulator import Simulator
 from mjbeer.simulation.tolerance import even_at_most
 from mjbeer.studies.benchmark import other_tools, points
 from mjbeer.studies.benchmark.other_tools import OTHER_TOOLS, Samples
