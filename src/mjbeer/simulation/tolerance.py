@@ -224,11 +224,11 @@ class ToleranceLoop:
             # tolerance of more than half of that before a run is hardly any finer.
             if ratios[-1] < 2 or stalled > 2:
                 end = "with ever smaller steps" if stalled > 2 else "at the limit of rounding"
+                apart = ", then by ".join(f"{each:.2g} rad" for each in distances[1:][-2:])
                 raise _not_reached(
                     tolerance,
-                    f"two runs {end} differ by {distances[-1]:.2g} rad, the two before by {distances[-2]:.2g} rad, and "
-                    f"energy or momentum drift like an error of {drift:.2g} rad; the motion is not smooth, or rounding "
-                    "has the upper hand",
+                    f"two runs {end} differ by {apart}; energy or momentum drift like an error of {drift:.2g} rad; the "
+                    "motion is not smooth, or rounding has the upper hand",
                 )
             coarse, estimate, safety = fine, max(error, drift), by_chance
         rounding = _ROUNDING_OVER_NUDGE * distances[1] if distances[2:] else 0.0  # the first one includes the nudge
