@@ -9,13 +9,10 @@ import warnings
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from operator import itemgetter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from scipy.fft import dct
-from scipy.interpolate import CubicHermiteSpline
-from scipy.optimize import OptimizeResult, least_squares
-from scipy.special import fdtrc
+from scipy import fft, interpolate, optimize, special
 
 from mjbeer import require
 from mjbeer.drawing.words import in_words
@@ -24,9 +21,6 @@ from mjbeer.output import terminal
 from mjbeer.simulation.simulate import Run, simulate
 from mjbeer.theory.scene import Scene
 from mjbeer.tracks.track import Track
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 FREE = "incline", "fill", "damping", "drag"
 """What a scene has that can be fitted."""
@@ -41,41 +35,35 @@ _TRIED = {"fill": np.linspace(0.05, 0.95, 19), "damping": (0.55, 0.75, 1.3, 1.8)
 _STARTS = 6  # that are followed
 BEND = 5e-3  # how far a lens usually bends the picture of a straight board [m]
 LAW_ERROR = 0.1  # relative error of a liquid's damping law itself: of W^1.5 and its polynomial
-_TOLERANCE = 1e-5  # of the simulated angles [rad]: 0.3 micrometres of the way
-_NODES = 0.25  # time between the nodes of a motion's spline over sqrt(a/g): its error is below 1e-6 radii
-_MIDDLE, _STEP = 1e3, 1e-3  # the solver's variables at the guess, and the differences for their derivatives
+_MIDDLE = 1e3  # the solver's variables at the guess, so that they differ by 1e-3 for the derivatives
+_SOLVER: dict[str, Any] = {"ftol": 1e-6, "xtol": 1e-9, "diff_step": 1e-6, "max_nfev": 30}
 _LEAST_NOISE = 1e-6  # of a track without any [m or rad]
-_FAR = 6.0  # noises from the motion from which on a point is left out
-_AS_GOOD = 9.0  # sum of squares by which another minimum may be worse to be told: three standard errors
-_SLOW = 16, 8, 4, 2  # slow waves in which what is left is looked for: the slowest sixteenth of all, and so on
-_DOUBTED = 1e-3  # chance that noise leaves what was left from which on the model is said to be wrong
 _UNKNOWN = 0.3  # part of a value, over its size, from which on it is named in what the track does not tell
 _PULLED = 3.0  # errors from the known value from which on that is told
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Fit:
-    """A scene whose motion is that of a track: what follows from it, how well, and what does not."""
+    """A scene whose motion is that of a track: what follows from it, how well, and what does not.
+
+    The `scene` is as fitted; the rolling resistance is in its incline, which is less by it. `values` are those of the
+    scene, "damping" as a factor on its own law; "place" and "released", where the can was [m] and when it was let go
+    [s], as the track counts; "bend" of its middle [m]; with a tracked roll the "scale", by which the track is too long,
+    and the roll at first, "turned" [rad]. `errors` are their standard errors, if the model is right, and `correlation`
+    is that of the errors, in this order. `noise` is the standard deviation of the track from the model: "along" [m],
+    "roll" and "phi" [rad]. `warnings` say what speaks against the model, and what the track cannot tell, in a sentence
+    each. `run` is the fitted motion since the can was let go, and `model` what the track would be without noise.
+    """
 
     track: Track
     scene: Scene
-    """The scene as fitted; the rolling resistance is in its incline, which is less by it."""
     values: dict[str, float]
-    """Those of the scene, "damping" as a factor on its own law; "place" and "released", where the can was [m] and when
-    it was let go [s], as the track counts; "bend" of its middle [m]; with a tracked roll the "scale", by which the
-    track is too long, and the roll at first, "turned" [rad]."""
     errors: dict[str, float]
-    """The standard errors of the values, if the model is right."""
     correlation: np.ndarray
-    """The correlations of the errors, in the order of the values."""
     noise: dict[str, float]
-    """Standard deviation of the track from the model: "along" [m], "roll" and "phi" [rad]."""
     warnings: tuple[str, ...]
-    """What speaks against the model, and what the track cannot tell, one sentence for each."""
     run: Run
-    """The fitted motion since the can was let go."""
     model: dict[str, np.ndarray]
-    """What the track would be without noise: "along" [m], "roll" and "phi" [rad], each of shape (points,)."""
 
     def lines(self) -> list[str]:
         """Return each value of the scene with its error in words, angles in degrees."""
@@ -103,7 +91,7 @@ class Fit:
 
     __repr__ = __str__
 
-    def plot(self) -> "tuple[Axes, ...]":
+    def plot(self) -> tuple[Any, ...]:
         """Plot track and model, what is left in mm, and the speed, in a new figure; return the axes of each."""
         import matplotlib as mpl
         from matplotlib import pyplot as plt
@@ -111,29 +99,27 @@ class Fit:
         from mjbeer.output.plots import COLOURS, REFERENCE, SIMULATED, STYLE
 
         time, released = self.track.time, self.values["released"]
-        figure = plt.figure(figsize=(8, 7.5), layout="constrained")
-        points: dict[str, Any] = {"marker": ".", "markersize": 3, "linestyle": "", "color": COLOURS[1]}
-        with mpl.rc_context(STYLE):
-            panels = tuple(figure.subplots(3, 1, sharex=True, height_ratios=(3, 2, 2)))
-            panels[0].plot(time, self.track.along, label="track", **points)
-            panels[0].plot(time, self.model["along"], label="model", **SIMULATED)
-            panels[0].legend()
-            panels[1].plot(time, 1e3 * (self.track.along - self.model["along"]), **points)
-            panels[1].axhline(0, **REFERENCE)
-            panels[2].plot(np.append(time[0], released + self.run.time), np.append(0.0, self.run.u_dot), **SIMULATED)
-            for axes, told in zip(panels, ("along [m]", "track − model [mm]", "speed [m/s]"), strict=True):
+        with mpl.rc_context(STYLE | {"lines.markersize": 3}):
+            figure = plt.figure(figsize=(8, 7.5), layout="constrained")
+            places, left, speed = figure.subplots(3, 1, sharex=True, height_ratios=(3, 2, 2))
+            places.plot(time, self.track.along, ".", color=COLOURS[1], label="track")
+            places.plot(time, self.model["along"], label="model", **SIMULATED)
+            places.legend()
+            left.plot(time, 1e3 * (self.track.along - self.model["along"]), ".", color=COLOURS[1])
+            left.axhline(0, **REFERENCE)
+            speed.plot(np.append(time[0], released + self.run.time), np.append(0.0, self.run.u_dot), **SIMULATED)
+            speed.set(xlabel="time [s]", xlim=(time[0], time[-1]))
+            panels = {"along [m]": places, "track − model [mm]": left, "speed [m/s]": speed}
+            for label, axes in panels.items():
+                axes.set_ylabel(label)
                 axes.axvline(released, **REFERENCE)
-                axes.set_ylabel(told)
-            panels[2].set(xlabel="time [s]", xlim=(time[0], time[-1]))
             figure.suptitle("\n".join(self.lines()), fontsize=STYLE["axes.labelsize"], x=0.02, ha="left")
-        return panels
+        return tuple(panels.values())
 
     def video(self, path: str | os.PathLike[str], width: int = 1280, height: int = 720, speed: float = 1.0) -> None:
         """Write a film of the fitted motion (.mp4), with the tracked places as marks at the height of the axis.
 
-        Raises:
-          RenderingError: if OpenGL or ffmpeg does not work; the message says what to do.
-          OutputError: if the file cannot be written.
+        The arguments and the errors are those of `mjbeer.render`.
         """
         from mjbeer.drawing.film import MotionFilm
         from mjbeer.drawing.overlay import Look
@@ -169,14 +155,33 @@ def fit(
       ParameterError: if an argument is not allowed, or the scene has not what is sought.
       MjbeerError: if no motion of such a scene is like the track.
     """
+    require.instance("track", track, Track)
+    require.instance("scene", scene, Scene)
     console = terminal.STDERR if require.choice("progress", progress, (True, False)) else None
-    problem = _Problem(track, scene, free, {} if known is None else known, phi0, bend)
+    bend = min(BEND, float(np.ptp(track.along)) / 400) if bend is None else require.non_negative("bend", bend, "m")
+    measured = {"bend": (0.0, bend)} if bend > 0 else {}
+    for name, pair in require.instance("known", {} if known is None else known, dict).items():
+        value, *error = require.samples(f"known {require.choice('name', name, _SIZES)}", pair).tolist()
+        if len(error) != 1 or not error[0] > 0:
+            raise ParameterError(f"known {name} must be a value and its error, got {require.format_value(pair)}")
+        measured[name] = value, error[0]
+    sought = {require.choice("free", name, FREE) for name in (free if isinstance(free, (tuple, list, set)) else [free])}
+    sought |= {"place", "released", *measured, *["scale", "turned"] * (track.roll is not None)}
+    if not isinstance(phi0, str):
+        require.start(phi0, 0.0)
+    elif require.choice("phi0, if it is no number,", phi0, ("level", "free")) == "free":
+        sought.add("phi0")
+    has = inspect.signature(scene.made_by[0] if scene.made_by else Scene).parameters
+    for name in sought & {*FREE}:
+        if not (scene.damping_law if name == "damping" else name in has):
+            raise ParameterError(f"{name} is sought, which this scene was made without: {scene!r}")
+    problem = _Problem(track, scene, sought, measured, phi0)
     # What is warned of is about guesses; the fitted run has its own.
     with warnings.catch_warnings(action="ignore"), terminal.progress_bar(console, 1 + _STARTS) as step:
         step("looking for starts")
         rough = sorted(map(problem.suit, problem.tried), key=itemgetter("left"), reverse=True)
         best = {(values.get("fill"), values.get("damping")): values for values in rough}
-        minima: list[OptimizeResult] = []
+        minima: list[optimize.OptimizeResult] = []
         for values in sorted(best.values(), key=itemgetter("left"))[:_STARTS]:
             step("fitting")
             minima += problem.solve(values)
@@ -187,9 +192,7 @@ def fit(
 
 def remade(scene: Scene, changes: Mapping[str, float]) -> Scene:
     """Return a scene made anew with other arguments, such as a fill."""
-    if scene.made_by is None:
-        return replace(scene, **dict[str, Any](changes))
-    make, given = scene.made_by
+    make, given = scene.made_by or (functools.partial(replace, scene), {})
     return make(**{**given, **changes})
 
 
@@ -197,47 +200,20 @@ class _Problem:
     """Least squares over simulated motions: starts, residuals, minima, and what follows from them."""
 
     def __init__(
-        self,
-        track: Track,
-        scene: Scene,
-        free: Collection[str],
-        known: Mapping[str, tuple[float, float]],
-        phi0: float | str,
-        bend: float | None,
+        self, track: Track, scene: Scene, sought: set[str], known: dict[str, tuple[float, float]], phi0: float | str
     ) -> None:
-        self.track, self.scene = require.instance("track", track, Track), require.instance("scene", scene, Scene)
+        self.track, self.scene, self.known, self.phi0 = track, scene, known, phi0
         self.channels = [name for name in ("along", "roll", "phi") if getattr(track, name) is not None]
         self.data = np.stack([getattr(track, name) for name in self.channels])
-        self.span, self.phi0, latest = float(np.ptp(track.time)), phi0, float(track.time[-1])
-        names = free if isinstance(free, (tuple, list, set)) else [free]
-        sought = {require.choice("free", name, FREE) for name in names}
-        if not set(require.instance("known", known, dict)) <= set(_SIZES):
-            raise ParameterError(f"known are values of {', '.join(_SIZES)}, got {require.format_value(known)}")
-        sought |= set(known)
-        if not isinstance(phi0, str):
-            require.start(phi0, 0.0)
-        elif require.choice("phi0, if it is no number,", phi0, ("level", "free")) == "free":
-            sought.add("phi0")
-        has = inspect.signature(scene.made_by[0] if scene.made_by else Scene).parameters
-        for name in sought & {*FREE}:
-            if not (scene.damping_law if name == "damping" else name in has):
-                raise ParameterError(f"{name} is sought, which this scene was made without: {scene!r}")
+        self.span, latest = float(np.ptp(track.time)), float(track.time[-1])
         slides = scene.attachment == "sliding"
         if slides and "incline" in sought and scene.incline * (track.along[-1] - track.along[0]) <= 0:
             raise ParameterError("the can of this track does not roll down the scene's incline: turn the sign of one")
-        bend = min(BEND, float(np.ptp(track.along)) / 400) if bend is None else require.non_negative("bend", bend, "m")
-        sought |= {"place", "released", *["bend"] * (bend > 0), *["scale", "turned"] * (track.roll is not None)}
         self.names = [name for name in _SIZES if name in sought]
         self.own = [name for name in (*FREE, "phi0") if name in sought]
-        self.known = {"bend": (0.0, bend)} if bend > 0 else {}
-        for name, pair in known.items():
-            value, *error = require.samples(f"known {name}", pair).tolist()
-            if len(error) != 1 or not error[0] > 0:
-                raise ParameterError(f"known {name} must be a value and its error, got {require.format_value(pair)}")
-            self.known[name] = value, error[0]
         guess = {"incline": scene.incline, "fill": scene.load.fill, "drag": scene.drag, "damping": 1.0, "scale": 1.0}
         guess |= {"turned": track.roll[0] if track.roll is not None else 0.0}
-        guess |= {name: value for name, (value, _) in self.known.items()}
+        guess |= {name: value for name, (value, _) in known.items()}
         self.guess = {name: float(guess.get(name) or 0.0) for name in self.names}
         self.logarithmic = {"damping", *["incline"] * slides} & sought
         within = _WITHIN | {"released": (latest - 4 * self.span, latest - 0.1 * self.span)}
@@ -275,9 +251,9 @@ class _Problem:
             linear, quadratic, cubic = (factor * each for each in law.coefficients)
             scene = replace(scene, damping=replace(law, linear=linear, quadratic=quadratic, cubic=cubic))
         phi0 = values.get("phi0", -scene.incline if isinstance(self.phi0, str) else self.phi0)
-        step = _NODES * math.sqrt(scene.can.radius / max(scene.gravity, 1.0))
+        step = 0.25 * math.sqrt(scene.can.radius / max(scene.gravity, 1.0))  # a spline's error is below 1e-6 radii
         nodes = np.linspace(0, duration, min(5000, max(50, math.ceil(duration / step))))
-        return simulate(scene, duration, phi0, tolerance=_TOLERANCE, times=nodes)
+        return simulate(scene, duration, phi0, tolerance=1e-5, times=nodes)  # 1e-5 rad are 0.3 micrometres of the way
 
     def motion(self, values: Mapping[str, float], since: np.ndarray) -> np.ndarray:
         """Return distance [m] and phi [rad] at times since the can was let go [s], of shape (2, ...)."""
@@ -286,10 +262,10 @@ class _Problem:
         own = tuple((name, values[name]) for name in self.own)
         return np.moveaxis(self.spline(own, duration)(np.maximum(since, 0.0)), -1, 0)
 
-    def _spline(self, own: tuple[tuple[str, float], ...], duration: float) -> CubicHermiteSpline:
+    def _spline(self, own: tuple[tuple[str, float], ...], duration: float) -> interpolate.CubicHermiteSpline:
         run = self.simulate(dict(own), duration)
         states, rates = np.stack([run.distance, run.phi], axis=1), np.stack([run.u_dot, run.phi_dot], axis=1)
-        return CubicHermiteSpline(run.time, states, rates)
+        return interpolate.CubicHermiteSpline(run.time, states, rates)
 
     def model(self, values: Mapping[str, float]) -> np.ndarray:
         """Return what the track would be without noise, of shape (channels, points)."""
@@ -322,7 +298,7 @@ class _Problem:
             ways, _ = self.motion(values, time - released[:, np.newaxis])
         except MjbeerError:
             return values | {"left": math.inf}
-        within = (0.5, 2.0) if "incline" in self.own and self.scene.attachment == "sliding" else (1.0, 1.0)
+        within = (0.5, 2.0) if "incline" in self.logarithmic else (1.0, 1.0)
         beside = ways - ways.mean(axis=1, keepdims=True)
         stretch = np.clip(beside @ along / np.maximum((beside**2).sum(axis=1), 1e-30), *within)
         off = along - stretch[:, np.newaxis] * ways
@@ -330,31 +306,28 @@ class _Problem:
         suited = {"released": released[at], "place": np.mean(off[at]), "left": np.std(off[at])}
         return values | suited | {"incline": values.get("incline", 0.0) * stretch[at]}
 
-    def solve(self, values: dict[str, float]) -> list[OptimizeResult]:
+    def solve(self, values: dict[str, float]) -> list[optimize.OptimizeResult]:
         """Return the minimum that is found from a start, or none if there is no such motion."""
         z = np.clip(self.solved(values), *self.within)
         radius, kept = self.scene.can.radius, np.ones(self.data.shape, bool)
         noise = np.array([[values["left"] / (1 if name == "along" else radius)] for name in self.channels])
         for _ in range(3):  # the noise and the points that are kept settle on the way
             try:
-                found = least_squares(
-                    self.residuals, z, bounds=self.within, ftol=1e-6, xtol=1e-9, diff_step=_STEP / _MIDDLE,
-                    max_nfev=30, args=(noise, kept),
-                )  # fmt: skip
+                found = optimize.least_squares(self.residuals, z, bounds=self.within, args=(noise, kept), **_SOLVER)
             except ValueError:  # of infinite residuals
                 return []
             found.noise, found.kept, z = noise, kept, found.x
             off = self.model(self.values(z)) - self.data
-            kept = np.abs(off) <= _FAR * 1.4826 * np.median(np.abs(off), axis=1, keepdims=True)
+            kept = np.abs(off) <= 6 * 1.4826 * np.median(np.abs(off), axis=1, keepdims=True)  # six deviations of noise
             spare = np.maximum(1.0, kept.sum(axis=1) - len(z) / len(off))
             noise = np.sqrt(_LEAST_NOISE**2 + ((kept * off) ** 2).sum(axis=1) / spare)[:, np.newaxis]
         found.squares = 2 * self.data.shape[1] * np.log(noise).sum() + (found.fun[self.data.size :] ** 2).sum()
         return [found]
 
-    def result(self, minima: list[OptimizeResult]) -> Fit:
+    def result(self, minima: list[optimize.OptimizeResult]) -> Fit:
         """Return the fit of the best minimum, with what there is to be warned of."""
         least, own = min(each.squares for each in minima), slice(len(self.own))
-        alike = [each for each in minima if each.squares < least + _AS_GOOD]
+        alike = [each for each in minima if each.squares < least + 9.0]  # three standard errors
         # Of minima that the track does not tell apart, the one that is nearest to the given scene.
         found = min(alike, key=lambda each: np.abs(each.x - _MIDDLE)[own].sum())
         values = self.values(found.x)
@@ -364,11 +337,11 @@ class _Problem:
         covariance = (ways.T * spread**2) @ ways
         deviations = np.sqrt(np.diag(covariance))
         told = []
-        # F tests: of white noise, slow waves have no more than the others.
-        power = dct(found.fun[: len(self.track.time)][found.kept[0]], norm="ortho") ** 2 + _LEAST_NOISE**2
-        slow = [math.ceil(len(power) / part) for part in _SLOW]
-        chances = [fdtrc(n, len(power) - n, power[:n].mean() / power[n:].mean()) for n in slow]
-        if (chance := len(chances) * min(chances)) < _DOUBTED:
+        # F tests: of white noise the slow waves, as the slowest sixteenth of all, have no more than the others.
+        power = fft.dct(found.fun[: len(self.track.time)][found.kept[0]], norm="ortho") ** 2 + _LEAST_NOISE**2
+        slow = [math.ceil(len(power) / part) for part in (16, 8, 4, 2)]
+        chances = [special.fdtrc(n, len(power) - n, power[:n].mean() / power[n:].mean()) for n in slow]
+        if (chance := len(chances) * min(chances)) < 1e-3:
             once = f"{1 / max(chance, 1e-99):.0e} tracks"
             told.append(f"the model is wrong, or the track: noise is as smooth as what is left once in {once}")
         for name, (value, error) in self.known.items():
@@ -381,22 +354,14 @@ class _Problem:
                 told.append(f"this track does not tell {' from '.join(parts)}")
         for other in alike:
             if self.own and (np.abs(other.x - found.x) / deviations)[own].max() > 2 * _PULLED:
-                there = self.values(other.x)
-                there = ", ".join(f"{name} = {there[name]:.4g}" for name in self.own)
+                there = ", ".join(f"{name} = {value:.4g}" for name, value in [*self.values(other.x).items()][own])
                 told.append(f"another motion is as near to the track: {there}")
         if far := int((~found.kept).sum()):
             told.append(f"{far} points are far from all others, and were left out")
         errors = {name: _SIZES[name] * each for name, each in zip(self.names, deviations.tolist(), strict=True)}
         errors |= {name: errors[name] * values[name] / self.guess[name] for name in self.logarithmic}
+        noise = dict(zip(self.channels, found.noise[:, 0].tolist(), strict=True))
         model = dict(zip(self.channels, self.model(values), strict=True))
-        return Fit(
-            self.track,
-            run.scene,
-            values,
-            errors,
-            covariance / np.outer(deviations, deviations),
-            dict(zip(self.channels, found.noise[:, 0].tolist(), strict=True)),
-            (*dict.fromkeys(told), *run.warnings),
-            run,
-            model,
-        )
+        correlation = covariance / np.outer(deviations, deviations)
+        told = [*dict.fromkeys(told), *run.warnings]
+        return Fit(self.track, run.scene, values, errors, correlation, noise, tuple(told), run, model)
