@@ -53,16 +53,11 @@ def test_the_truth_is_within_the_errors(scene: Scene, phi0: float | None, other:
     assert not [each for each in result.warnings if "model is wrong" in each or "does not tell" in each]
 
 
-FULL, MISTAKEN = frozen(math.radians(3), 0.6, METAL), filmed(OIL)
+SMOOTH, FULL, MISTAKEN = sliding(WATER.incline, can=METAL), frozen(math.radians(3), 0.6, METAL), filmed(OIL)
 MISTAKEN.along[[30, 100]] += 0.05
 RESISTED = filmed(remade(WATER, {"incline": WATER.incline - 0.01}))  # a resistance of 0.01 looks like less incline
 WARNED: dict[str, tuple[Track, Scene, tuple[str, ...], dict[str, Any]]] = {
-    "the model is wrong, or what was known: bend": (
-        filmed(WATER),
-        sliding(WATER.incline, can=METAL),
-        (),
-        {"known": KNOWN},
-    ),
+    "the model is wrong, or what was known: bend": (filmed(WATER), SMOOTH, (), {"known": KNOWN}),
     "the model is wrong": (filmed(ICE, -1.5), OIL, (), {"known": KNOWN}),
     "model is wrong": (filmed(OIL), WATER, (), {"known": KNOWN}),
     "what was known: incline": (RESISTED, WATER, ("damping",), {"known": KNOWN | {"incline": (WATER.incline, 0.002)}}),
@@ -103,7 +98,7 @@ def test_tracked_angles_give_the_scale_and_the_start() -> None:
         (mjbeer.pendulum(), {"free": ("fill",)}, "fill is sought"),
         (WATER, {"free": ("mass",)}, "free must be one of"),
         (WATER, {"known": {"fill": (0.5, 0.0)}}, "a value and its error"),
-        (WATER, {"known": {"mass": (0.5, 0.1)}}, "known are values of incline"),
+        (WATER, {"known": {"mass": (0.5, 0.1)}}, "a name in known must be one of 'incline'"),
         (WATER, {"phi0": "flat"}, "phi0, if it is no number, must be one of"),
         (remade(WATER, {"incline": -0.03}), {}, "does not roll down the scene's incline"),
     ],
@@ -116,10 +111,8 @@ def test_what_cannot_be_fitted_is_refused(scene: Scene, others: dict[str, Any], 
 def test_the_plot_and_the_command_show_the_fit(tmp_path: pathlib.Path, capsys: pytest.CaptureFixture[str]) -> None:
     track, table, plot = filmed(WATER), tmp_path / "can.csv", tmp_path / "fit.svg"
     np.savetxt(table, np.stack([track.time, track.along], axis=1), header="t,x", comments="", delimiter=",")
-    words = (
-        f"fit {table} liquid --can metal --incline 2.5 --free incline damping --known fill=0.5±0.005 --output {plot}"
-    )
-    assert main(words.split()) == 0
+    options = f"--can metal --incline 2.5 --free incline damping --known fill=0.5±0.005 --output {plot}"
+    assert main(f"fit {table} liquid {options}".split()) == 0
     result = found(track, liquid("water", math.radians(2.5), can=METAL), "incline", "damping", known=KNOWN)
     assert capsys.readouterr().out == "\n".join([result.title, *result.lines()]) + "\n"
     assert f"incline, less rolling resistance: {math.degrees(result.values['incline']):.3f}°" in plot.read_text()

@@ -1,5 +1,6 @@
 """What was in the can: the scene whose simulated motion is that of a track, with errors that hold."""
 
+import contextlib
 import functools
 import inspect
 import itertools
@@ -22,8 +23,7 @@ from mjbeer.simulation.simulate import Run, simulate
 from mjbeer.theory.scene import Scene
 from mjbeer.tracks.track import Track
 
-FREE = "incline", "fill", "damping", "drag"
-"""What a scene has that can be fitted."""
+FREE = "incline", "fill", "damping", "drag"  # what a scene has that can be fitted
 _SIZES = {
     "incline": math.radians(1), "fill": 0.1, "damping": 1.0, "drag": 1e-3, "phi0": 0.2, "place": 0.02, "released": 0.1,
     "bend": 5e-3, "scale": 0.02, "turned": 0.2,
@@ -37,22 +37,19 @@ BEND = 5e-3  # how far a lens usually bends the picture of a straight board [m]
 LAW_ERROR = 0.1  # relative error of a liquid's damping law itself: of W^1.5 and its polynomial
 _MIDDLE = 1e3  # the solver's variables at the guess, so that they differ by 1e-3 for the derivatives
 _SOLVER: dict[str, Any] = {"ftol": 1e-6, "xtol": 1e-9, "diff_step": 1e-6, "max_nfev": 30}
-_LEAST_NOISE = 1e-6  # of a track without any [m or rad]
-_UNKNOWN = 0.3  # part of a value, over its size, from which on it is named in what the track does not tell
-_PULLED = 3.0  # errors from the known value from which on that is told
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Fit:
     """A scene whose motion is that of a track: what follows from it, how well, and what does not.
 
-    The `scene` is as fitted; the rolling resistance is in its incline, which is less by it. `values` are those of the
-    scene, "damping" as a factor on its own law; "place" and "released", where the can was [m] and when it was let go
-    [s], as the track counts; "bend" of its middle [m]; with a tracked roll the "scale", by which the track is too long,
-    and the roll at first, "turned" [rad]. `errors` are their standard errors, if the model is right, and `correlation`
-    is that of the errors, in this order. `noise` is the standard deviation of the track from the model: "along" [m],
-    "roll" and "phi" [rad]. `warnings` say what speaks against the model, and what the track cannot tell, in a sentence
-    each. `run` is the fitted motion since the can was let go, and `model` what the track would be without noise.
+    The `scene` is as fitted, its incline less by the rolling resistance. `values` are those of the scene, "damping" as
+    a factor on its own law; "place" and "released", where the can was [m] and when it was let go [s], as the track
+    counts; "bend" of its middle [m]; with a tracked roll the "scale", by which the track is too long, and the roll at
+    first, "turned" [rad]. `errors` are their standard errors, if the model is right, and `correlation` is that of the
+    errors. `noise` is the standard deviation of the track from the `model`, the track without noise: "along" [m],
+    "roll" and "phi" [rad]. `warnings` say what speaks against the model and what the track cannot tell, and `run` is
+    the fitted motion since the can was let go.
     """
 
     track: Track
@@ -67,24 +64,20 @@ class Fit:
 
     def lines(self) -> list[str]:
         """Return each value of the scene with its error in words, angles in degrees."""
-        told = []
-        words = {"incline": "incline, less rolling resistance", "damping": "damping over its law"}
-        for name in (*FREE, "phi0", "scale"):
-            if name in self.values:
-                scale, unit = (180 / math.pi, "°") if name in ("incline", "phi0") else (1.0, "")
-                value, error = scale * self.values[name], scale * self.errors[name]
-                digits = max(0, 1 - math.floor(math.log10(error)))
-                law = f", and ± {LAW_ERROR * value:.2g} of the law itself" if name == "damping" else ""
-                told.append(f"{words.get(name, name)}: {value:.{digits}f}{unit} ± {error:.{digits}f}{unit}{law}")
+        told, words = [], {"incline": "incline, less rolling resistance", "damping": "damping over its law"}
+        for name in [each for each in (*FREE, "phi0", "scale") if each in self.values]:
+            scale, unit = (180 / math.pi, "°") if name in ("incline", "phi0") else (1.0, "")
+            value, error = scale * self.values[name], scale * self.errors[name]
+            digits = max(0, 1 - math.floor(math.log10(error)))
+            law = f", and ± {LAW_ERROR * value:.2g} of the law itself" if name == "damping" else ""
+            told.append(f"{words.get(name, name)}: {value:.{digits}f}{unit} ± {error:.{digits}f}{unit}{law}")
         return told
 
     @property
     def title(self) -> str:
         """Return what was fitted to what, in a line."""
-        noise = ", ".join(
-            f"{1e3 * noise:.2g} {'mm' if name == 'along' else 'mrad'} ({name})" for name, noise in self.noise.items()
-        )
-        return f"{in_words(self.scene)}; {len(self.track.time)} points with a noise of {noise}"
+        noise = [f"{1e3 * rms:.2g} {'mm' if name == 'along' else 'mrad'} ({name})" for name, rms in self.noise.items()]
+        return f"{in_words(self.scene)}; {len(self.track.time)} points with a noise of {', '.join(noise)}"
 
     def __str__(self) -> str:
         return "\n".join([self.title, *self.lines(), *(f"note: {each}" for each in self.warnings)])
@@ -93,42 +86,35 @@ class Fit:
 
     def plot(self) -> tuple[Any, ...]:
         """Plot track and model, what is left in mm, and the speed, in a new figure; return the axes of each."""
-        import matplotlib as mpl
         from matplotlib import pyplot as plt
 
         from mjbeer.output.plots import COLOURS, REFERENCE, SIMULATED, STYLE
 
         time, released = self.track.time, self.values["released"]
-        with mpl.rc_context(STYLE | {"lines.markersize": 3}):
+        with plt.rc_context(STYLE | {"lines.markersize": 3}):
             figure = plt.figure(figsize=(8, 7.5), layout="constrained")
             places, left, speed = figure.subplots(3, 1, sharex=True, height_ratios=(3, 2, 2))
             places.plot(time, self.track.along, ".", color=COLOURS[1], label="track")
             places.plot(time, self.model["along"], label="model", **SIMULATED)
+            places.set_ylabel("along [m]")
             places.legend()
             left.plot(time, 1e3 * (self.track.along - self.model["along"]), ".", color=COLOURS[1])
             left.axhline(0, **REFERENCE)
+            left.set_ylabel("track − model [mm]")
             speed.plot(np.append(time[0], released + self.run.time), np.append(0.0, self.run.u_dot), **SIMULATED)
-            speed.set(xlabel="time [s]", xlim=(time[0], time[-1]))
-            panels = {"along [m]": places, "track − model [mm]": left, "speed [m/s]": speed}
-            for label, axes in panels.items():
-                axes.set_ylabel(label)
-                axes.axvline(released, **REFERENCE)
+            speed.set(xlabel="time [s]", ylabel="speed [m/s]", xlim=(time[0], time[-1]))
             figure.suptitle("\n".join(self.lines()), fontsize=STYLE["axes.labelsize"], x=0.02, ha="left")
-        return tuple(panels.values())
+        return places, left, speed
 
     def video(self, path: str | os.PathLike[str], width: int = 1280, height: int = 720, speed: float = 1.0) -> None:
-        """Write a film of the fitted motion (.mp4), with the tracked places as marks at the height of the axis.
-
-        The arguments and the errors are those of `mjbeer.render`.
-        """
+        """Write a film of `run` (.mp4), the tracked places as marks; arguments and errors are as in `mjbeer.render`."""
         from mjbeer.drawing.film import MotionFilm
         from mjbeer.drawing.overlay import Look
         from mjbeer.drawing.video import write
 
         time = self.track.time - self.values["released"]
         u = np.interp(time, self.run.time, self.run.u) + self.track.along - self.model["along"]
-        measured = np.stack([time, u], axis=1)
-        look = Look("A filmed can, and the motion that was fitted to it", marks=("measured",), measured=measured)
+        look = Look("A filmed can and the fitted motion", marks=("measured",), measured=np.stack([time, u], axis=1))
         write(MotionFilm(lambda: self.run, look, speed=speed).plan(), require.path(path), width, height, 30)
 
 
@@ -143,13 +129,12 @@ def fit(
 ) -> Fit:
     """Return the scene whose motion, as MuJoCo simulates it, is that of a track.
 
-    `free` has the names of what is sought: "incline" [rad], "fill", "damping" (a factor on the scene's own law) and
-    "drag" [kg/m]. The `scene` has everything else, and a guess of those. `known` are measured values with their
-    standard errors, which count as much as the track; "scale" may be among them, by which the track is too long. `phi0`
-    [rad] is the load's angle when the can is let go, at rest: a number, "level" for a level surface, or "free". Where
-    the can was and when it was let go are always sought, and so is a bend of the track as a lens makes one, of the size
-    `bend` [m], by default 5 mm or 1/400 of a shorter way; 0 is none. A tracked roll gives the scale. If `progress` is
-    true and standard error is a terminal, it shows a progress bar.
+    `free` are the names of what is sought: "incline" [rad], "fill", "damping" (a factor on the scene's own law) and
+    "drag" [kg/m]; the `scene` has all else, and guesses of those. `known` are measured values with standard errors,
+    which count as much as the track; also "scale", by which the track is too long, and which a tracked roll gives.
+    `phi0` [rad] is the load's angle when the can is let go, at rest: a number, "level" for a level surface, or "free".
+    Where the can was and when it was let go are always sought, and so is a bend of the track as by a lens, of the size
+    `bend` [m]: 5 mm or 1/400 of a shorter way by default, none if 0. `progress` shows a progress bar in a terminal.
 
     Raises:
       ParameterError: if an argument is not allowed, or the scene has not what is sought.
@@ -161,7 +146,7 @@ def fit(
     bend = min(BEND, float(np.ptp(track.along)) / 400) if bend is None else require.non_negative("bend", bend, "m")
     measured = {"bend": (0.0, bend)} if bend > 0 else {}
     for name, pair in require.instance("known", {} if known is None else known, dict).items():
-        value, *error = require.samples(f"known {require.choice('name', name, _SIZES)}", pair).tolist()
+        value, *error = require.samples(f"known {require.choice('a name in known', name, _SIZES)}", pair).tolist()
         if len(error) != 1 or not error[0] > 0:
             raise ParameterError(f"known {name} must be a value and its error, got {require.format_value(pair)}")
         measured[name] = value, error[0]
@@ -179,12 +164,14 @@ def fit(
     # What is warned of is about guesses; the fitted run has its own.
     with warnings.catch_warnings(action="ignore"), terminal.progress_bar(console, 1 + _STARTS) as step:
         step("looking for starts")
-        rough = sorted(map(problem.suit, problem.tried), key=itemgetter("left"), reverse=True)
+        suited = [each for each in map(problem.suit, problem.tried) if math.isfinite(each["left"])]
+        rough = sorted(suited, key=itemgetter("left"), reverse=True)
         best = {(values.get("fill"), values.get("damping")): values for values in rough}
         minima: list[optimize.OptimizeResult] = []
         for values in sorted(best.values(), key=itemgetter("left"))[:_STARTS]:
             step("fitting")
-            minima += problem.solve(values)
+            with contextlib.suppress(ValueError):  # there is no such motion
+                minima.append(problem.solve(values))
         if not minima:
             raise MjbeerError(f"no motion of such a scene is like the track, got {scene!r}")
         return problem.result(minima)
@@ -199,29 +186,26 @@ def remade(scene: Scene, changes: Mapping[str, float]) -> Scene:
 class _Problem:
     """Least squares over simulated motions: starts, residuals, minima, and what follows from them."""
 
-    def __init__(
-        self, track: Track, scene: Scene, sought: set[str], known: dict[str, tuple[float, float]], phi0: float | str
-    ) -> None:
+    def __init__(self, track: Track, scene: Scene, names: set[str], known: dict[str, tuple], phi0: float | str) -> None:
         self.track, self.scene, self.known, self.phi0 = track, scene, known, phi0
         self.channels = [name for name in ("along", "roll", "phi") if getattr(track, name) is not None]
         self.data = np.stack([getattr(track, name) for name in self.channels])
         self.span, latest = float(np.ptp(track.time)), float(track.time[-1])
         slides = scene.attachment == "sliding"
-        if slides and "incline" in sought and scene.incline * (track.along[-1] - track.along[0]) <= 0:
+        if slides and "incline" in names and scene.incline * (track.along[-1] - track.along[0]) <= 0:
             raise ParameterError("the can of this track does not roll down the scene's incline: turn the sign of one")
-        self.names = [name for name in _SIZES if name in sought]
-        self.own = [name for name in (*FREE, "phi0") if name in sought]
+        self.own = [name for name in (*FREE, "phi0") if name in names]
         guess = {"incline": scene.incline, "fill": scene.load.fill, "drag": scene.drag, "damping": 1.0, "scale": 1.0}
         guess |= {"turned": track.roll[0] if track.roll is not None else 0.0}
         guess |= {name: value for name, (value, _) in known.items()}
-        self.guess = {name: float(guess.get(name) or 0.0) for name in self.names}
-        self.logarithmic = {"damping", *["incline"] * slides} & sought
+        self.guess = {name: float(guess.get(name) or 0.0) for name in _SIZES if name in names}
+        self.logarithmic = {"damping", *["incline"] * slides} & names
         within = _WITHIN | {"released": (latest - 4 * self.span, latest - 0.1 * self.span)}
         within |= {name: (0.01 * self.guess[name], 100 * self.guess[name]) for name in self.logarithmic}
-        self.within = self.solved({name: within.get(name, (-math.inf, math.inf)) for name in self.names}).T
+        self.within = self.solved({name: within.get(name, (-math.inf, math.inf)) for name in self.guess}).T
         tried = {name: [value, *([] if name in known else _TRIED.get(name, []))] for name, value in self.guess.items()}
-        if "incline" in sought - {*known} and not slides:  # its swings are to be in phase with the track's
-            factors = (0.8, 1.0) if "phi0" in sought else (0.7, 0.85, 1.0, 1.2, 1.5)
+        if "incline" in names - {*known} and not slides:  # its swings are to be in phase with the track's
+            factors = (0.8, 1.0) if "phi0" in names else (0.7, 0.85, 1.0, 1.2, 1.5)
             tried["incline"] = [scene.incline * factor for factor in factors]
         self.tried = [dict(zip(tried, each, strict=True)) for each in itertools.product(*tried.values())]
         self.spline = functools.lru_cache(100)(self._spline)
@@ -238,8 +222,8 @@ class _Problem:
     def values(self, z: np.ndarray) -> dict[str, float]:
         """Return the values of the solver's variables."""
         found = {}
-        for name, each in zip(self.names, z.tolist(), strict=True):
-            guess, off = self.guess[name], _SIZES[name] * (each - _MIDDLE)
+        for (name, guess), each in zip(self.guess.items(), z.tolist(), strict=True):
+            off = _SIZES[name] * (each - _MIDDLE)
             found[name] = guess * math.exp(off / abs(guess)) if name in self.logarithmic else guess + off
         return found
 
@@ -256,11 +240,14 @@ class _Problem:
         return simulate(scene, duration, phi0, tolerance=1e-5, times=nodes)  # 1e-5 rad are 0.3 micrometres of the way
 
     def motion(self, values: Mapping[str, float], since: np.ndarray) -> np.ndarray:
-        """Return distance [m] and phi [rad] at times since the can was let go [s], of shape (2, ...)."""
+        """Return distance [m] and phi [rad] at times since the can was let go [s], (2, ...); NaN if it cannot be."""
         # As long as an eighth of the track's time more or less needs, so that many a release has the same spline.
         duration = self.span / 8 * max(1, math.ceil(8 * float(since.max()) / self.span))
-        own = tuple((name, values[name]) for name in self.own)
-        return np.moveaxis(self.spline(own, duration)(np.maximum(since, 0.0)), -1, 0)
+        try:
+            spline = self.spline(tuple((name, values[name]) for name in self.own), duration)
+        except MjbeerError:
+            return np.full((2, *since.shape), math.nan)
+        return np.moveaxis(spline(np.maximum(since, 0.0)), -1, 0)
 
     def _spline(self, own: tuple[tuple[str, float], ...], duration: float) -> interpolate.CubicHermiteSpline:
         run = self.simulate(dict(own), duration)
@@ -279,25 +266,17 @@ class _Problem:
         return np.stack([found[name] for name in self.channels])
 
     def residuals(self, z: np.ndarray, noise: np.ndarray, kept: np.ndarray) -> np.ndarray:
-        """Return the distances of track and known values, infinite where there is no such motion: it steps back."""
+        """Return the distances of track and known values, NaN where there is no such motion: the solver steps back."""
         values = self.values(z)
-        try:
-            off = kept * (self.model(values) - self.data) / noise
-        except MjbeerError:
-            off = np.full(self.data.shape, math.inf)
+        off = kept * (self.model(values) - self.data) / noise
         return np.append(off, [(values[name] - value) / error for name, (value, error) in self.known.items()])
 
     def suit(self, values: dict[str, float]) -> dict[str, float]:
-        """Return values with the place and the release that suit the track best, and what is "left" with them [m].
-
-        A sliding load's incline is made to suit, too, as its way is nearly proportional to it.
-        """
+        """Return values with the place and the release that suit the track best, and what is "left" with them [m]."""
         time, along = (each[:: max(1, len(each) // 100)] for each in (self.track.time, self.track.along))
         released = time[0] + self.span * np.linspace(-1, 0.8, 91)
-        try:
-            ways, _ = self.motion(values, time - released[:, np.newaxis])
-        except MjbeerError:
-            return values | {"left": math.inf}
+        ways, _ = self.motion(values, time - released[:, np.newaxis])
+        # A sliding load's incline is made to suit, too, as its way is nearly proportional to it.
         within = (0.5, 2.0) if "incline" in self.logarithmic else (1.0, 1.0)
         beside = ways - ways.mean(axis=1, keepdims=True)
         stretch = np.clip(beside @ along / np.maximum((beside**2).sum(axis=1), 1e-30), *within)
@@ -306,23 +285,20 @@ class _Problem:
         suited = {"released": released[at], "place": np.mean(off[at]), "left": np.std(off[at])}
         return values | suited | {"incline": values.get("incline", 0.0) * stretch[at]}
 
-    def solve(self, values: dict[str, float]) -> list[optimize.OptimizeResult]:
-        """Return the minimum that is found from a start, or none if there is no such motion."""
+    def solve(self, values: dict[str, float]) -> optimize.OptimizeResult:
+        """Return the minimum that is found from a start; ValueError: there is no such motion."""
         z = np.clip(self.solved(values), *self.within)
         radius, kept = self.scene.can.radius, np.ones(self.data.shape, bool)
         noise = np.array([[values["left"] / (1 if name == "along" else radius)] for name in self.channels])
         for _ in range(3):  # the noise and the points that are kept settle on the way
-            try:
-                found = optimize.least_squares(self.residuals, z, bounds=self.within, args=(noise, kept), **_SOLVER)
-            except ValueError:  # of infinite residuals
-                return []
+            found = optimize.least_squares(self.residuals, z, bounds=self.within, args=(noise, kept), **_SOLVER)
             found.noise, found.kept, z = noise, kept, found.x
             off = self.model(self.values(z)) - self.data
             kept = np.abs(off) <= 6 * 1.4826 * np.median(np.abs(off), axis=1, keepdims=True)  # six deviations of noise
             spare = np.maximum(1.0, kept.sum(axis=1) - len(z) / len(off))
-            noise = np.sqrt(_LEAST_NOISE**2 + ((kept * off) ** 2).sum(axis=1) / spare)[:, np.newaxis]
+            noise = np.sqrt(1e-12 + ((kept * off) ** 2).sum(axis=1) / spare)[:, np.newaxis]  # 1e-6 at least
         found.squares = 2 * self.data.shape[1] * np.log(noise).sum() + (found.fun[self.data.size :] ** 2).sum()
-        return [found]
+        return found
 
     def result(self, minima: list[optimize.OptimizeResult]) -> Fit:
         """Return the fit of the best minimum, with what there is to be warned of."""
@@ -338,30 +314,30 @@ class _Problem:
         deviations = np.sqrt(np.diag(covariance))
         told = []
         # F tests: of white noise the slow waves, as the slowest sixteenth of all, have no more than the others.
-        power = fft.dct(found.fun[: len(self.track.time)][found.kept[0]], norm="ortho") ** 2 + _LEAST_NOISE**2
+        power = fft.dct(found.fun[: len(self.track.time)][found.kept[0]], norm="ortho") ** 2 + 1e-12
         slow = [math.ceil(len(power) / part) for part in (16, 8, 4, 2)]
         chances = [special.fdtrc(n, len(power) - n, power[:n].mean() / power[n:].mean()) for n in slow]
         if (chance := len(chances) * min(chances)) < 1e-3:
             once = f"{1 / max(chance, 1e-99):.0e} tracks"
             told.append(f"the model is wrong, or the track: noise is as smooth as what is left once in {once}")
         for name, (value, error) in self.known.items():
-            if (off := abs(values[name] - value) / error) > _PULLED:
+            if (off := abs(values[name] - value) / error) > 3:
                 told.append(f"the model is wrong, or what was known: {name} is {off:.1f} of its errors off")
         for way, wide in zip(ways, spread, strict=True):
-            if wide > 1:  # the track says less than the sizes
-                least = min(_UNKNOWN, wide * np.abs(way).max())
-                parts = [name for name, part in zip(self.names, way, strict=True) if abs(part) * wide >= least]
+            if wide > 1:  # the track says less than the sizes; named is what it leaves open by 0.3 of its size
+                least = min(0.3, wide * np.abs(way).max())
+                parts = [name for name, part in zip(self.guess, way, strict=True) if abs(part) * wide >= least]
                 told.append(f"this track does not tell {' from '.join(parts)}")
         for other in alike:
-            if self.own and (np.abs(other.x - found.x) / deviations)[own].max() > 2 * _PULLED:
+            if self.own and (np.abs(other.x - found.x) / deviations)[own].max() > 6:
                 there = ", ".join(f"{name} = {value:.4g}" for name, value in [*self.values(other.x).items()][own])
                 told.append(f"another motion is as near to the track: {there}")
         if far := int((~found.kept).sum()):
             told.append(f"{far} points are far from all others, and were left out")
-        errors = {name: _SIZES[name] * each for name, each in zip(self.names, deviations.tolist(), strict=True)}
+        errors = {name: _SIZES[name] * each for name, each in zip(self.guess, deviations.tolist(), strict=True)}
         errors |= {name: errors[name] * values[name] / self.guess[name] for name in self.logarithmic}
         noise = dict(zip(self.channels, found.noise[:, 0].tolist(), strict=True))
         model = dict(zip(self.channels, self.model(values), strict=True))
         correlation = covariance / np.outer(deviations, deviations)
-        told = [*dict.fromkeys(told), *run.warnings]
-        return Fit(self.track, run.scene, values, errors, correlation, noise, tuple(told), run, model)
+        told = (*dict.fromkeys(told), *run.warnings)
+        return Fit(self.track, run.scene, values, errors, correlation, noise, told, run, model)

@@ -22,17 +22,18 @@ _COLUMNS = {
     "phi": (_ANGLES, "phi|φ"),
 }
 """What is read: the units that it may have, and its usual headings."""
-_TITLE = re.compile(r"(?:latest *:)?(?:run *#?\d+ *[:|])?([^\[(]*)(?:[\[(](.*?)[\])])?(?: *run *#?\d+)?")
-"""A heading: the name, between them which run it was, and the unit."""
-_CROOKED = 0.02
-"""Largest distance of places from a straight line (rms), over their range: a mark on the rim, whose path is a cycloid,
-has more than that within a metre."""
+_TITLE = re.compile(r"(?:latest *:)?(?:run *#?\d+ *[:|])? *([^\[(]*[^\[( ])? *(?:[\[(] *(.*?) *[\])])?")
+"""How a heading begins: after which run it was, the name and the unit."""
 _LEAST = 12  # points: there are half as many unknowns
+_NUMBER = re.compile(r"[-+]?(\d+[.,]?\d*|[.,]\d+)(e[-+]?\d+)?", re.IGNORECASE)
 
 
 @dataclass(frozen=True, eq=False)
 class Track:
     """Where a filmed can was, and when; all arrays have the shape (points,).
+
+    `time` is by any clock [s], `along` the place of the axis along the incline [m], `roll` the angle by which a mark on
+    the can has turned [rad], both from anywhere and growing downhill, and `phi` the load's to the incline [rad].
 
     Raises:
       ParameterError: if an array is not finite, they differ in length, the times do not increase, there are fewer than
@@ -40,25 +41,18 @@ class Track:
     """
 
     time: np.ndarray
-    """Times by any clock [s]."""
     along: np.ndarray
-    """Place of the axis along the incline, from anywhere [m]; it grows downhill."""
     roll: np.ndarray | None = None
-    """Angle by which a mark on the can has turned, from anywhere [rad]; it grows with `along`."""
     phi: np.ndarray | None = None
-    """Angle of the load to the incline [rad]."""
 
     def __post_init__(self) -> None:
-        for name, value in tuple(vars(self).items()):
-            if name in ("time", "along") or value is not None:
-                vars(self)[name] = require.samples(name, value)
-                if (count := len(getattr(self, name))) != len(self.time):
-                    raise ParameterError(f"{name} must have as many entries as time, {len(self.time)}, got {count}")
+        for name in ("time", "along", *[each for each in ("roll", "phi") if getattr(self, each) is not None]):
+            vars(self)[name] = require.samples(name, getattr(self, name))
+            if (count := len(getattr(self, name))) != len(self.time):
+                raise ParameterError(f"{name} must have as many entries as time, {len(self.time)}, got {count}")
         if len(self.time) < _LEAST or (np.diff(self.time) <= 0).any() or not np.ptp(self.along) > 0:
-            raise ParameterError(
-                f"a track has {_LEAST} points or more, in the order of time and not all in one place, got "
-                f"{len(self.time)} from {self.time[0]:g} s to {self.time[-1]:g} s"
-            )
+            got = f"{len(self.time)} from {self.time[0]:g} s to {self.time[-1]:g} s"
+            raise ParameterError(f"a track has {_LEAST} points or more, ever later and not all in one place, got {got}")
 
 
 def read_track(
@@ -68,16 +62,15 @@ def read_track(
 
     Numbers may have decimal commas. Lines above the last heading are passed over, rows with an empty cell are left out.
     Units stand in the headings, in brackets; without them they are s, m and rad. `columns` says which column is "time",
-    "frame", "x", "y", "roll" or "phi", by its heading or its number from 1; usual headings are found without. `rate`
-    [1/s] is that of the pictures, where frames are numbered instead of times. With x and y the places are those along
-    the straight line through all of them, counted as the can went.
+    "frame", "x", "y", "roll" or "phi", by heading or number from 1, unless its heading is a usual one. `rate` [1/s] is
+    that of pictures whose frames are numbered. With x and y the places are those along the line through all of them.
 
     Raises:
       ParameterError: if it cannot be read so; the message has line and column.
     """
     source, columns = require.path(path), require.instance("columns", {} if columns is None else columns, dict)
     cells = _cells(source)
-    first = next((line for line, row in cells.items() if sum(map(math.isfinite, map(_number, row))) > 1), 0)
+    first = next((line for line, row in cells.items() if sum(map(bool, map(_NUMBER.fullmatch, row))) > 1), 0)
     if not (above := [line for line in cells if line < first]):
         raise ParameterError(f"{source} is no table: there must be a heading above two columns of numbers or more")
     used = _used(f"{source}, line {above[-1]}", cells[above[-1]], columns)
@@ -87,19 +80,20 @@ def read_track(
     for line, row in cells.items():
         if line >= first and all(at < len(row) and row[at] for at, _ in used.values()):
             for name, (at, scale) in used.items():
-                place, value = f"{source}, line {line}, column {at + 1}", _number(row[at])
-                if not math.isfinite(value):
+                place = f"{source}, line {line}, column {at + 1}"
+                if not _NUMBER.fullmatch(row[at]):
                     raise ParameterError(f"{place}: {row[at]!r} is no number")
-                if name == "time" and data[name] and not value * scale > data[name][-1]:
+                value = scale * float(row[at].replace(",", "."))
+                if name == "time" and data[name] and not value > data[name][-1]:
                     raise ParameterError(f"{place}: this time is not later than the one before")
-                data[name].append(value * scale)
+                data[name].append(value)
     arrays = {name: np.array(values) for name, values in data.items()}
     along = _straight(source, arrays["x"], arrays["y"]) if "y" in arrays else arrays["x"]
     return Track(arrays["time"], along, arrays.get("roll"), arrays.get("phi"))
 
 
 def _cells(source: pathlib.Path) -> dict[int, list[str]]:
-    """Return the cells of the lines that are not empty, by their numbers, with decimal points."""
+    """Return the cells of the lines that are not empty, by their numbers."""
     try:
         raw = source.read_bytes()
     except OSError as error:
@@ -107,35 +101,24 @@ def _cells(source: pathlib.Path) -> dict[int, list[str]]:
     text = raw.decode("utf-16" if raw[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig", errors="replace")
     lines = {number: line for number, line in enumerate(text.splitlines(), start=1) if line.strip(" \t;,")}
     mark = next((each for each in "\t;," if 2 * sum(each in line for line in lines.values()) > len(lines)), None)
-    if mark != ",":  # a comma that does not stand between cells is a decimal one
-        lines = {number: line.replace(",", ".") for number, line in lines.items()}
     return {number: [cell.strip(' "') for cell in line.split(mark)] for number, line in lines.items()}
-
-
-def _number(cell: str) -> float:
-    """Return the number in a cell, NaN if there is none."""
-    try:
-        return float(cell)
-    except ValueError:
-        return math.nan
 
 
 def _used(place: str, titles: list[str], columns: Mapping[str, str | int]) -> dict[str, tuple[int, float]]:
     """Return which column has what, and its unit; `titles` are the headings at a place of the file."""
     if not set(columns) <= set(_COLUMNS):
         raise ParameterError(f"columns are those of {', '.join(_COLUMNS)}, got {require.format_value(columns)}")
-    parts, used = [_TITLE.fullmatch(title.lower()) for title in titles], {}
+    parts, used = [_TITLE.findall(title.lower())[0] for title in titles], {}
     for name, (units, usual) in _COLUMNS.items():
         if asked := str(columns.get(name, "")):
             meant = [at for at, title in enumerate(titles) if asked in (title, str(at + 1))]
         else:
-            meant = [at for at, part in enumerate(parts) if part and re.fullmatch(usual, part[1].strip())]
+            meant = [at for at, (part, _) in enumerate(parts) if re.fullmatch(usual, part)]
         if len(meant) > 1 or (asked and not meant):
             found = f"{len(meant) or 'no'} columns may be {name}"
             raise ParameterError(f"{place}: {found}; say which by its number from 1, of {titles}")
         if meant and not (name == "frame" and "time" in used):
-            part = parts[meant[0]]
-            unit = part[2].strip() if part and part[2] else ""
+            _, unit = parts[meant[0]]
             if unit and unit not in units:
                 allowed = f"the unit of {name} is one of {', '.join(units)}, got {titles[meant[0]]!r}"
                 raise ParameterError(f"{place}, column {meant[0] + 1}: {allowed}")
@@ -150,9 +133,9 @@ def _straight(source: pathlib.Path, x: np.ndarray, y: np.ndarray) -> np.ndarray:
     places = np.stack([x - x.mean(), y - y.mean()], axis=1)
     _, sizes, ways = np.linalg.svd(places, full_matrices=False)
     along = places @ ways[0]
-    if (aside := sizes[1] / math.sqrt(len(x))) > _CROOKED * np.ptp(along):
+    # A mark on the rim, whose path is a cycloid, is farther from a line within a metre.
+    if (aside := sizes[1] / math.sqrt(len(x))) > 0.02 * np.ptp(along):
         raise ParameterError(
-            f"{source}: x and y are no straight line but {1e3 * aside:.2g} mm beside it (rms); track the can's axis, "
-            "not a mark on its rim"
+            f"{source}: x and y are {1e3 * aside:.2g} mm off a line (rms); track the axis, not the rim"
         )
     return along * math.copysign(1.0, -along[0])
