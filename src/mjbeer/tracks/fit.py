@@ -45,11 +45,10 @@ class Fit:
 
     The `scene` is as fitted, its incline less by the rolling resistance. `values` are those of the scene, "damping" as
     a factor on its own law; "place" and "released", where the can was [m] and when it was let go [s], as the track
-    counts; "bend" of its middle [m]; with a tracked roll the "scale", by which the track is too long, and the roll at
-    first, "turned" [rad]. `errors` are their standard errors, if the model is right, and `correlation` is that of the
-    errors. `noise` is the standard deviation of the track from the `model`, the track without noise: "along" [m],
-    "roll" and "phi" [rad]. `warnings` say what speaks against the model and what the track cannot tell, and `run` is
-    the fitted motion since the can was let go.
+    counts; "bend" of its middle [m]; with a tracked roll "scale", by which the track is too long, and "turned", the
+    roll at first [rad]. `errors` are their standard errors, if the model is right, `correlation` is that of the errors,
+    and `noise` the standard deviation from the `model`, the track without noise: "along" [m], "roll" and "phi" [rad].
+    `warnings` say what speaks against the model and what the track cannot tell; `run` is the motion from release on.
     """
 
     track: Track
@@ -244,15 +243,13 @@ class _Problem:
         # As long as an eighth of the track's time more or less needs, so that many a release has the same spline.
         duration = self.span / 8 * max(1, math.ceil(8 * float(since.max()) / self.span))
         try:
-            spline = self.spline(tuple((name, values[name]) for name in self.own), duration)
+            return self.spline(tuple((name, values[name]) for name in self.own), duration)(np.maximum(since, 0.0))
         except MjbeerError:
             return np.full((2, *since.shape), math.nan)
-        return np.moveaxis(spline(np.maximum(since, 0.0)), -1, 0)
 
     def _spline(self, own: tuple[tuple[str, float], ...], duration: float) -> interpolate.CubicHermiteSpline:
         run = self.simulate(dict(own), duration)
-        states, rates = np.stack([run.distance, run.phi], axis=1), np.stack([run.u_dot, run.phi_dot], axis=1)
-        return interpolate.CubicHermiteSpline(run.time, states, rates)
+        return interpolate.CubicHermiteSpline(run.time, [run.distance, run.phi], [run.u_dot, run.phi_dot], axis=1)
 
     def model(self, values: Mapping[str, float]) -> np.ndarray:
         """Return what the track would be without noise, of shape (channels, points)."""
@@ -272,12 +269,11 @@ class _Problem:
         return np.append(off, [(values[name] - value) / error for name, (value, error) in self.known.items()])
 
     def suit(self, values: dict[str, float]) -> dict[str, float]:
-        """Return values with the place and the release that suit the track best, and what is "left" with them [m]."""
+        """Return values with the place, the release and a sliding load's incline that suit best, and what is "left"."""
         time, along = (each[:: max(1, len(each) // 100)] for each in (self.track.time, self.track.along))
         released = time[0] + self.span * np.linspace(-1, 0.8, 91)
         ways, _ = self.motion(values, time - released[:, np.newaxis])
-        # A sliding load's incline is made to suit, too, as its way is nearly proportional to it.
-        within = (0.5, 2.0) if "incline" in self.logarithmic else (1.0, 1.0)
+        within = (0.5, 2.0) if "incline" in self.logarithmic else (1.0, 1.0)  # ways are nearly proportional to it
         beside = ways - ways.mean(axis=1, keepdims=True)
         stretch = np.clip(beside @ along / np.maximum((beside**2).sum(axis=1), 1e-30), *within)
         off = along - stretch[:, np.newaxis] * ways
@@ -285,11 +281,11 @@ class _Problem:
         suited = {"released": released[at], "place": np.mean(off[at]), "left": np.std(off[at])}
         return values | suited | {"incline": values.get("incline", 0.0) * stretch[at]}
 
-    def solve(self, values: dict[str, float]) -> optimize.OptimizeResult:
+    def solve(self, start: dict[str, float]) -> optimize.OptimizeResult:
         """Return the minimum that is found from a start; ValueError: there is no such motion."""
-        z = np.clip(self.solved(values), *self.within)
+        z = np.clip(self.solved(start), *self.within)
         radius, kept = self.scene.can.radius, np.ones(self.data.shape, bool)
-        noise = np.array([[values["left"] / (1 if name == "along" else radius)] for name in self.channels])
+        noise = np.array([[start["left"] / (1 if name == "along" else radius)] for name in self.channels])
         for _ in range(3):  # the noise and the points that are kept settle on the way
             found = optimize.least_squares(self.residuals, z, bounds=self.within, args=(noise, kept), **_SOLVER)
             found.noise, found.kept, z = noise, kept, found.x

@@ -24,7 +24,6 @@ _COLUMNS = {
 """What is read: the units that it may have, and its usual headings."""
 _TITLE = re.compile(r"(?:latest *:)?(?:run *#?\d+ *[:|])? *([^\[(]*[^\[( ])? *(?:[\[(] *(.*?) *[\])])?")
 """How a heading begins: after which run it was, the name and the unit."""
-_LEAST = 12  # points: there are half as many unknowns
 _NUMBER = re.compile(r"[-+]?(\d+[.,]?\d*|[.,]\d+)(e[-+]?\d+)?", re.IGNORECASE)
 
 
@@ -37,7 +36,7 @@ class Track:
 
     Raises:
       ParameterError: if an array is not finite, they differ in length, the times do not increase, there are fewer than
-        12 points, or all are in one place.
+        12 points (two for each unknown), or all are in one place.
     """
 
     time: np.ndarray
@@ -50,9 +49,9 @@ class Track:
             vars(self)[name] = require.samples(name, getattr(self, name))
             if (count := len(getattr(self, name))) != len(self.time):
                 raise ParameterError(f"{name} must have as many entries as time, {len(self.time)}, got {count}")
-        if len(self.time) < _LEAST or (np.diff(self.time) <= 0).any() or not np.ptp(self.along) > 0:
+        if len(self.time) < 12 or (np.diff(self.time) <= 0).any() or not np.ptp(self.along) > 0:
             got = f"{len(self.time)} from {self.time[0]:g} s to {self.time[-1]:g} s"
-            raise ParameterError(f"a track has {_LEAST} points or more, ever later and not all in one place, got {got}")
+            raise ParameterError(f"a track has 12 points or more, ever later and not all in one place, got {got}")
 
 
 def read_track(
@@ -133,8 +132,7 @@ def _straight(source: pathlib.Path, x: np.ndarray, y: np.ndarray) -> np.ndarray:
     places = np.stack([x - x.mean(), y - y.mean()], axis=1)
     _, sizes, ways = np.linalg.svd(places, full_matrices=False)
     along = places @ ways[0]
-    # A mark on the rim, whose path is a cycloid, is farther from a line within a metre.
-    if (aside := sizes[1] / math.sqrt(len(x))) > 0.02 * np.ptp(along):
+    if (aside := sizes[1] / math.sqrt(len(x))) > 0.02 * np.ptp(along):  # the rim's cycloid is more within a metre
         raise ParameterError(
             f"{source}: x and y are {1e3 * aside:.2g} mm off a line (rms); track the axis, not the rim"
         )
