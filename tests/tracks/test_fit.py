@@ -95,7 +95,7 @@ def test_tracked_angles_give_the_scale_and_the_start() -> None:
         (mjbeer.pendulum(), {"free": ("fill",)}, "fill is sought"),
         (WATER, {"free": ("mass",)}, "free must be one of"),
         (WATER, {"known": {"fill": (0.5, 0.0)}}, "a value and its error"),
-        (WATER, {"known": {"mass": (0.5, 0.1)}}, "a name in known must be one of 'incline'"),
+        (WATER, {"known": {"mass": (0.5, 0.1)}}, "must be one of 'incline', .* got 'mass'"),
         (WATER, {"phi0": "flat"}, "phi0, if it is no number, must be one of"),
         (remade(WATER, {"incline": -0.03}), {}, "does not roll down the scene's incline"),
     ],

@@ -66,7 +66,7 @@ WRONG = {
     "is no table": "nothing here\n",
     "rate of the frames must be": table("frame,x", ",", TIME, PLACE),
     "12 points or more": "\n".join(GOOD.splitlines()[:8]),
-    "x and y are 6.8 mm off a line": table("t,x,y", ",", TIME, PLACE, 0.03 * np.sin(60 * PLACE)),
+    "x and y are 6.8 mm off a straight line": table("t,x,y", ",", TIME, PLACE, 0.03 * np.sin(60 * PLACE)),
 }
 
 

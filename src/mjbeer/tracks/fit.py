@@ -145,7 +145,8 @@ def fit(
     bend = min(BEND, float(np.ptp(track.along)) / 400) if bend is None else require.non_negative("bend", bend, "m")
     measured = {"bend": (0.0, bend)} if bend > 0 else {}
     for name, pair in require.instance("known", {} if known is None else known, dict).items():
-        value, *error = require.samples(f"known {require.choice('a name in known', name, _SIZES)}", pair).tolist()
+        require.choice(f"a name in {require.format_value(known)}", name, _SIZES)
+        value, *error = require.samples(f"known {name}", pair).tolist()
         if len(error) != 1 or not error[0] > 0:
             raise ParameterError(f"known {name} must be a value and its error, got {require.format_value(pair)}")
         measured[name] = value, error[0]
@@ -190,20 +191,19 @@ class _Problem:
         self.channels = [name for name in ("along", "roll", "phi") if getattr(track, name) is not None]
         self.data = np.stack([getattr(track, name) for name in self.channels])
         self.span, latest = float(np.ptp(track.time)), float(track.time[-1])
-        slides = scene.attachment == "sliding"
-        if slides and "incline" in names and scene.incline * (track.along[-1] - track.along[0]) <= 0:
+        self.logarithmic = {"damping", *["incline"] * (scene.attachment == "sliding")} & names
+        if "incline" in self.logarithmic and scene.incline * (track.along[-1] - track.along[0]) <= 0:
             raise ParameterError("the can of this track does not roll down the scene's incline: turn the sign of one")
         self.own = [name for name in (*FREE, "phi0") if name in names]
         guess = {"incline": scene.incline, "fill": scene.load.fill, "drag": scene.drag, "damping": 1.0, "scale": 1.0}
         guess |= {"turned": track.roll[0] if track.roll is not None else 0.0}
         guess |= {name: value for name, (value, _) in known.items()}
         self.guess = {name: float(guess.get(name) or 0.0) for name in _SIZES if name in names}
-        self.logarithmic = {"damping", *["incline"] * slides} & names
         within = _WITHIN | {"released": (latest - 4 * self.span, latest - 0.1 * self.span)}
         within |= {name: (0.01 * self.guess[name], 100 * self.guess[name]) for name in self.logarithmic}
         self.within = self.solved({name: within.get(name, (-math.inf, math.inf)) for name in self.guess}).T
         tried = {name: [value, *([] if name in known else _TRIED.get(name, []))] for name, value in self.guess.items()}
-        if "incline" in names - {*known} and not slides:  # its swings are to be in phase with the track's
+        if "incline" in names - {*known} - self.logarithmic:  # its swings are to be in phase with the track's
             factors = (0.8, 1.0) if "phi0" in names else (0.7, 0.85, 1.0, 1.2, 1.5)
             tried["incline"] = [scene.incline * factor for factor in factors]
         self.tried = [dict(zip(tried, each, strict=True)) for each in itertools.product(*tried.values())]
@@ -269,7 +269,7 @@ class _Problem:
         return np.append(off, [(values[name] - value) / error for name, (value, error) in self.known.items()])
 
     def suit(self, values: dict[str, float]) -> dict[str, float]:
-        """Return values with the place, the release and a sliding load's incline that suit best, and what is "left"."""
+        """Return values with place, release and a sliding load's incline that suit best, and what is "left" [m]."""
         time, along = (each[:: max(1, len(each) // 100)] for each in (self.track.time, self.track.along))
         released = time[0] + self.span * np.linspace(-1, 0.8, 91)
         ways, _ = self.motion(values, time - released[:, np.newaxis])

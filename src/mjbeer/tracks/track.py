@@ -24,19 +24,19 @@ _COLUMNS = {
 """What is read: the units that it may have, and its usual headings."""
 _TITLE = re.compile(r"(?:latest *:)?(?:run *#?\d+ *[:|])? *([^\[(]*[^\[( ])? *(?:[\[(] *(.*?) *[\])])?")
 """How a heading begins: after which run it was, the name and the unit."""
-_NUMBER = re.compile(r"[-+]?(\d+[.,]?\d*|[.,]\d+)(e[-+]?\d+)?", re.IGNORECASE)
+_NUMBER = re.compile(r"[-+]?(\d+[.,]?\d*|[.,]\d+)(e[-+]?\d+)?", re.IGNORECASE)  # a comma within a cell is a decimal one
 
 
 @dataclass(frozen=True, eq=False)
 class Track:
     """Where a filmed can was, and when; all arrays have the shape (points,).
 
-    `time` is by any clock [s], `along` the place of the axis along the incline [m], `roll` the angle by which a mark on
-    the can has turned [rad], both from anywhere and growing downhill, and `phi` the load's to the incline [rad].
+    `time` is by any clock [s]; `along` is the place of the axis along the incline [m] and `roll` the angle of a mark on
+    the can [rad], both from anywhere and growing downhill; `phi` is the load's angle to the incline [rad].
 
     Raises:
       ParameterError: if an array is not finite, they differ in length, the times do not increase, there are fewer than
-        12 points (two for each unknown), or all are in one place.
+        12 points, which is twice the usual number of unknowns, or all are in one place.
     """
 
     time: np.ndarray
@@ -62,7 +62,7 @@ def read_track(
     Numbers may have decimal commas. Lines above the last heading are passed over, rows with an empty cell are left out.
     Units stand in the headings, in brackets; without them they are s, m and rad. `columns` says which column is "time",
     "frame", "x", "y", "roll" or "phi", by heading or number from 1, unless its heading is a usual one. `rate` [1/s] is
-    that of pictures whose frames are numbered. With x and y the places are those along the line through all of them.
+    that of numbered frames. With x and y the places are along the line through all of them, counted as the can went.
 
     Raises:
       ParameterError: if it cannot be read so; the message has line and column.
@@ -132,8 +132,7 @@ def _straight(source: pathlib.Path, x: np.ndarray, y: np.ndarray) -> np.ndarray:
     places = np.stack([x - x.mean(), y - y.mean()], axis=1)
     _, sizes, ways = np.linalg.svd(places, full_matrices=False)
     along = places @ ways[0]
-    if (aside := sizes[1] / math.sqrt(len(x))) > 0.02 * np.ptp(along):  # the rim's cycloid is more within a metre
-        raise ParameterError(
-            f"{source}: x and y are {1e3 * aside:.2g} mm off a line (rms); track the axis, not the rim"
-        )
+    if (aside := sizes[1] / math.sqrt(len(x))) > 0.02 * np.ptp(along):  # a mark on the rim is farther, within a metre
+        off = f"x and y are {1e3 * aside:.2g} mm off a straight line (rms)"
+        raise ParameterError(f"{source}: {off}; track the can's axis, not a mark on its rim")
     return along * math.copysign(1.0, -along[0])
