@@ -24,8 +24,8 @@ DONE, BLOCK_END, TOO_SMALL, NOT_FINITE = range(4)
 """The statuses with which a kernel can end."""
 compiled = partial(njit, cache=True, error_model="numpy", nogil=True, _nrt=False, no_cfunc_wrapper=True)
 """Compiles what allocates nothing, so that arrays need not be counted: that takes a seventh of the time of a run."""
-inner = partial(compiled, no_cpython_wrapper=True)
-"""Compiles what compiled code alone may call; an entry for Python takes a seventh of the compiler's time."""
+inner = partial(compiled, no_cpython_wrapper=True, cache=False)
+"""Compiles what compiled code alone may call: an entry for Python and a file in the cache take time, too."""
 inline = partial(inner, forceinline=True)
 """Compiles what is called in every step into its callers: a call with so many arguments takes as long as its work."""
 _CONSTRAINT = int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
@@ -153,21 +153,29 @@ class Dynamics:
 
 
 @inline
+def accelerate(pointers):
+    """Compute the acceleration in the data.
+
+    `pointers` are the addresses of the functions that do so, with the third argument of each, of model and data, and of
+    the forces in which mj_rne puts its result.
+    """
+    functions, model, data, bias = pointers
+    for k in range(len(functions)):
+        call_c(functions[k, 0], model, data, functions[k, 1], bias)
+
+
+@inline
 def derivative(pointers, views, state, out):
     """Write the time derivative of a state to `out`.
 
-    `pointers` are the addresses of the functions that compute an acceleration, with the third argument of each, of
-    model and data, and of the forces in which mj_rne puts its result; `views` are qpos, qvel and acceleration in the
-    data, and which of qpos are needed.
+    `views` are qpos, qvel and acceleration in the data, and which of qpos are needed.
     """
-    functions, model, data, bias = pointers
     qpos, qvel, qacc, needed = views
     n = qpos.size
     for i in range(n):
-        qpos[i] = state[i] if needed[i] else 0.0
+        qpos[i] = state[i] * needed[i]
         qvel[i] = state[n + i]
-    for k in range(len(functions)):
-        call_c(functions[k, 0], model, data, functions[k, 1], bias)
+    accelerate(pointers)
     for i in range(n):
         out[i] = qvel[i]
         out[n + i] = qacc[i]

@@ -28,8 +28,8 @@ from mjbeer.integrators.dynamics import (
     DONE,
     NOT_FINITE,
     Dynamics,
+    accelerate,
     compiled,
-    derivative,
     inline,
     inner,
     run_blocks,
@@ -119,34 +119,37 @@ class GaussJackson:
             slide = float(start[0]) - own.share * math.sin(phi)
             speed = float(start[size]) - own.share * math.cos(phi) * phi_dot
         none, sums = (0.0, 0.0), ((slide, 0.0), (speed, 0.0))
-        work = *np.empty((2, COUNT + BLOCK)), np.empty(COUNT + 14), np.empty(2 * size), np.empty(2 * size)
-        fixed = *self._dynamics.kernel, own, forcing, timestep, work, times, samples, kept
+        work = *np.empty((2, COUNT + BLOCK)), np.empty(COUNT + 14)
+        pointers, (*views, _) = self._dynamics.kernel
+        views[0][:] = views[1][:] = 0.0
+        fixed = pointers, tuple(views), own, forcing, timestep, work, times, samples, kept
         place = 0.0, _MIDDLE, sample, (phi, phi_dot * pace, pace), (none, none, none, *sums)
         self.evaluations, _ = run_blocks("GaussJackson", _advance, fixed, place, limit, observer)
         return samples
 
 
 @inline
-def _accelerations(pointers, views, own, phi, rate, state, change):
+def _accelerations(pointers, views, own, phi, rate):
     """Return the second derivative of phi in the method's own time, and that of the slide less its share in time.
 
-    The state that is evaluated has the slide at rest at its origin.
+    `pointers` are those of `accelerate`, and `views` qpos, qvel and acceleration in the data, with the slide at rest at
+    its origin.
     """
-    last = state.size // 2 - 1
+    qpos, qvel, qacc = views
+    last = qpos.size - 1
     sin, cos = math.sin(own.turns * phi), math.cos(own.turns * phi)
     square = own.even + own.uneven * sin * sin
     speed = rate / math.sqrt(square)
-    state[0] = state[1 + last] = 0.0
-    state[last], state[2 * last + 1] = phi, speed
-    derivative(pointers, views, state, change)
-    phi_ddot, pulled = change[2 * last + 1], 0.0
+    qpos[last], qvel[last] = phi, speed
+    accelerate(pointers)
+    phi_ddot, pulled = qacc[last], 0.0
     if last > 0:
-        pulled = change[last + 1] - own.share * (math.cos(phi) * phi_ddot - math.sin(phi) * speed * speed)
+        pulled = qacc[0] - own.share * (math.cos(phi) * phi_ddot - math.sin(phi) * speed * speed)
     return square * phi_ddot + own.uneven * own.turns * sin * cos * speed * speed, pulled
 
 
 @inner
-def _begin(pointers, views, own, start, step, gains, pulls, state, change):
+def _begin(pointers, views, own, start, step, gains, pulls):
     """Find the accelerations of the first `COUNT` steps, and return the evaluations and the two sums of phi.
 
     There are no evaluations if the iteration does not end. The law's accelerations, iterated first, are nearly right.
@@ -166,7 +169,7 @@ def _begin(pointers, views, own, start, step, gains, pulls, state, change):
                 gain = own.law[0] + own.law[1] * math.cos(angle) + own.law[2] * math.sin(angle)
             else:
                 turning = rate + step * weighted(_FIRST_RATE[k], gains, end)
-                gain, pulls[k] = _accelerations(pointers, views, own, angle, turning, state, change)
+                gain, pulls[k] = _accelerations(pointers, views, own, angle, turning)
                 evaluations += 1
             if not abs(gain - gains[k]) <= error:
                 error = abs(gain - gains[k])
@@ -215,11 +218,11 @@ def _advance(pointers, views, own, forcing, step, work, times, samples, kept, pl
     """
     small()
     _, back, sample, before, (first, second, clock, slide, speed) = place
-    gains, pulls, curve, state, change = work
+    gains, pulls, curve = work
     kept_times, kept_states = kept
-    status, end, evaluations, row = BLOCK_END, COUNT, 0, 0
+    status, end, evaluations, row = BLOCK_END, gains.size - BLOCK, 0, 0
     if back == _MIDDLE:
-        evaluations, total, double = _begin(pointers, views, own, before, step, gains, pulls, state, change)
+        evaluations, total, double = _begin(pointers, views, own, before, step, gains, pulls)
         first, second, row = (total, 0.0), (double, 0.0), 1 if kept_times.size > 0 else 0
         if evaluations == 0:
             status = NOT_FINITE
@@ -231,18 +234,16 @@ def _advance(pointers, views, own, forcing, step, work, times, samples, kept, pl
         else:
             phi = step * step * (second[0] + weighted(_PREDICT, gains, end))
             rate = step * (first[0] + weighted(_PREDICT_RATE, gains, end))
-            corrected, end = phi, end + 1
-            for correction in range(2):
-                gain, pulls[end - 1] = _accelerations(pointers, views, own, corrected, rate, state, change)
+            gain, predicted, end = 0.0, phi, end + 1
+            for _ in range(2 - own.lawful):
+                predicted = phi
+                gain, pulls[end - 1] = _accelerations(pointers, views, own, phi, rate)
                 gains[end - 1] = gain
                 evaluations += 1
-                if correction > 0:
-                    break
-                corrected = step * step * (second[0] + weighted(_CORRECT, gains, end))
-                if own.lawful:
-                    gain += (own.law[2] * math.cos(phi) - own.law[1] * math.sin(phi)) * (corrected - phi)
-                    break
+                phi = step * step * (second[0] + weighted(_CORRECT, gains, end))
                 rate = step * (first[0] + gain + weighted(_CORRECT_RATE, gains, end))
+            if own.lawful:
+                gain += (own.law[2] * math.cos(predicted) - own.law[1] * math.sin(predicted)) * (phi - predicted)
             gain += forcing
             gains[end - 1] = gain
             first = kahan_add(first, gain)

@@ -76,7 +76,9 @@ def own_time(
 def _points(count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return so many points of Gauss's formula, their weights, and those of places there, for an `OwnTime`."""
     points, weights = leggauss(count)
-    return (points + 1) / 2, weights / 2, np.vander(-points / 2, COUNT + 2) @ _BETWEEN.T
+    within = np.vander(-points / 2, COUNT + 2) @ _BETWEEN.T
+    within.flags.writeable = False  # like all weights, or `weighted` would be compiled once more
+    return (points + 1) / 2, weights / 2, within
 
 
 def series(power: int, back: int, terms: int) -> list[Fraction]:
@@ -208,17 +210,15 @@ def find(own, line, before, after, span, since):
     share = since / span
     first, last = span / (line.step * before[2]), span / (line.step * after[2])
     passed = share * (first + share * (3 - 2 * first - last + share * (first + last - 2)))
-    for attempt in range(_ATTEMPTS + 1):
+    for _ in range(_ATTEMPTS):
         phi, rate, pace = node(own, line, passed)
-        if attempt == _ATTEMPTS or share < 0:
-            break
         late = since - duration(own, line, passed)
         grows = own.uneven * own.turns * math.sin(2 * own.turns * phi) * rate / (2 * pace * pace)
         ahead = late / pace
         passed += ahead * (1 - grows * ahead / 2) / line.step
         if abs(late) <= _PUNCTUAL * span:
-            share = -1.0
-    return phi, rate, pace
+            break
+    return node(own, line, passed)
 
 
 @inline
