@@ -68,6 +68,8 @@ _MIDDLE_RATE, _MIDDLE_PLACE = _FIRST_RATE[_MIDDLE].copy(), _FIRST_PLACE[_MIDDLE]
 _FIRST_PLACE -= _MIDDLE_PLACE + np.arange(-_MIDDLE, _MIDDLE + 1)[:, None] * _MIDDLE_RATE
 _FIRST_RATE -= _MIDDLE_RATE
 """Weights of the first accelerations in how rates and places differ from those at the start, in a row for each step."""
+_OUTWARDS = np.argsort(np.abs(np.arange(COUNT) - _MIDDLE), stable=True)
+"""The first steps in the order in which an iteration takes them: the start, then one before it and one after it..."""
 _CONSTRAINT, _DAMPER = int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT), int(mujoco.mjtDisableBit.mjDSBL_DAMPER)
 
 
@@ -119,7 +121,7 @@ class GaussJackson:
             slide = float(start[0]) - own.share * math.sin(phi)
             speed = float(start[size]) - own.share * math.cos(phi) * phi_dot
         none, sums = (0.0, 0.0), ((slide, 0.0), (speed, 0.0))
-        work = *np.empty((2, COUNT + BLOCK)), np.empty(COUNT + 14)
+        work = *np.zeros((2, COUNT + BLOCK)), np.empty(COUNT + 14)
         pointers, (*views, _) = self._dynamics.kernel
         views[0][:] = views[1][:] = 0.0
         fixed = pointers, tuple(views), own, forcing, timestep, work, times, samples, kept
@@ -158,12 +160,10 @@ def _begin(pointers, views, own, start, step, gains, pulls):
     end = gains.size - BLOCK  # `COUNT`, a constant, would compile `weighted` once more
     by_law, evaluations, before = True, 0, np.inf
     phi, rate, _ = start
-    for k in range(COUNT):
-        gains[k] = 0.0
     for _ in range(_ITERATIONS):
         error = largest = 0.0
-        for order in range(COUNT):  # outwards: the start, then a step after it and one before it, by turns
-            k = _MIDDLE + ((order + 1) // 2 if order % 2 else -order // 2)
+        for order in range(COUNT):
+            k = _OUTWARDS[order]
             angle = phi + step * ((k - _MIDDLE) * rate + step * weighted(_FIRST_PLACE[k], gains, end))
             if by_law:
                 gain = own.law[0] + own.law[1] * math.cos(angle) + own.law[2] * math.sin(angle)
@@ -171,10 +171,8 @@ def _begin(pointers, views, own, start, step, gains, pulls):
                 turning = rate + step * weighted(_FIRST_RATE[k], gains, end)
                 gain, pulls[k] = _accelerations(pointers, views, own, angle, turning)
                 evaluations += 1
-            if not abs(gain - gains[k]) <= error:
-                error = abs(gain - gains[k])
-            if abs(gain) > largest:
-                largest = abs(gain)
+            error = max(error, abs(gain - gains[k]))
+            largest = max(largest, abs(gain))
             gains[k] = gain
         if not error < np.inf:
             break
