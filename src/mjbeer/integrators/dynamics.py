@@ -3,6 +3,7 @@
 numba takes longer to import than all else together: what steps with MuJoCo's integrators alone does not import this.
 """
 
+import gc
 import threading
 from collections.abc import Generator
 from contextlib import contextmanager, nullcontext
@@ -42,7 +43,10 @@ _WITHOUT_PASSIVE = (
 
 @contextmanager
 def _announced() -> Generator[None]:
-    """Say, if somebody may see it, that numba compiles in the block, and does not read its cache, after a second."""
+    """Say, if somebody may see it, that numba compiles in the block, and does not read its cache, after a second.
+
+    The garbage collector, which would find nothing in a tenth of that time, rests.
+    """
 
     def say() -> None:
         from mjbeer.output import terminal  # which takes a tenth of a second to import
@@ -50,13 +54,16 @@ def _announced() -> Generator[None]:
         if begun.buffer and (terminal.STDERR.is_terminal or terminal.STDERR.is_jupyter):
             terminal.say("mjbeer: compiling this integrator for this machine, once: up to 4 s")
 
-    timer = threading.Timer(1.0, say)
+    timer, collects = threading.Timer(1.0, say), gc.isenabled()
+    gc.disable()
     with event.install_recorder("numba:compile") as begun:
         timer.start()
         try:
             yield
         finally:
             timer.cancel()
+            if collects:
+                gc.enable()
 
 
 def run_blocks(

@@ -32,7 +32,7 @@ class SmoothRecorder(Recorder):
         self._numbers = (
             *(shape.base, shape.chord, shape.coupling, shape.ramp),
             *(shape.depth * math.sin(shape.bottom), shape.depth * math.cos(shape.bottom)),
-            *(can.radius, can.effective_mass, load.mass, load.offset, load.inertia),
+            *(1.0 if model.nv > 1 else can.radius, can.effective_mass, load.mass, load.offset, load.inertia),
             *(scene.gravity * math.sin(scene.incline), scene.gravity * math.cos(scene.incline)),
             *(scene.mass, arm, scene.downhill_weight, scene.downhill_weight / mass if sliding else 0.0, friction),
             # Friction over drive, over the force of the swinging load, and over phi_ddot.
@@ -65,21 +65,21 @@ def _update(numbers, times, states, found, start, now, last):
     and its rate at the last state.
     """
     small()
-    base, chord, coupling, ramp, lean, weight, radius, can_mass, load_mass, offset, load_inertia = numbers[:11]
+    base, chord, coupling, ramp, lean, weight, unit, can_mass, load_mass, offset, load_inertia = numbers[:11]
     down, normally, all_mass, arm, drive, steady, friction, by_drive, by_swing, by_turning = numbers[11:]
     size, moment, slips = states.shape[1] // 2, load_mass * offset, times.size
     for row in range(times.size):
         time, phi, rate = times[row], states[row, size - 1], states[row, 2 * size - 1]
-        u, speed = (states[row, 0], states[row, 2]) if size > 1 else (radius * phi, radius * rate)
+        u, speed = unit * states[row, 0], unit * states[row, size]
         if time == 0.0:
             last[0], last[1], last[2], last[3], last[4] = phi, speed - arm * math.cos(phi) * rate, time, phi, rate
         sin = cos = square = inertia = 0.0
         for part in range(2):  # in the middle since the last state, and at this one
             angle, turning = phi, rate
-            if part == 0 and time > last[2]:
-                step, turned = time - last[2], phi - last[3]
-                angle, turning = phi - turned / 2 + step * (last[4] - rate) / 8, 1.5 * turned / step
-                turning -= (rate + last[4]) / 4
+            if part == 0:  # which the start has not: its numbers are NaN, and do not count
+                step = time - last[2]
+                angle = (phi + last[3]) / 2 + step * (last[4] - rate) / 8
+                turning = 1.5 * (phi - last[3]) / step - (rate + last[4]) / 4
             sin, cos, square = math.sin(angle), math.cos(angle), turning * turning
             inertia = base + chord * (1 - cos) / 2 + coupling * sin * sin
             torque = ramp - weight * sin + lean * cos - sin * (chord / 4 + coupling * cos) * square
@@ -90,7 +90,7 @@ def _update(numbers, times, states, found, start, now, last):
                 found[_LOWEST] = normal
             if pull > found[_NEEDED] * normal:
                 found[_NEEDED] = pull / normal if normal > 0 else np.inf
-            if slips == times.size and (normal < 0 or pull > friction * normal):
+            if pull > friction * normal and slips == times.size:
                 slips = row
         along, across = speed - offset * cos * rate, offset * sin * rate
         kinetic = (can_mass * speed * speed + load_mass * (along * along + across * across) + load_inertia * square) / 2
@@ -105,12 +105,10 @@ def _update(numbers, times, states, found, start, now, last):
                 if time == 0.0:
                     start[k] = now[k]
                 now[k] -= start[k]
-            if abs(now[k]) > found[k]:
-                found[k] = abs(now[k])
+            found[k] = max(found[k], abs(now[k]))
         covered = abs(phi - last[3])
         found[_COVERED] += covered
         found[_DRIFT] += now[3] * covered
-        if abs(found[_DRIFT]) > found[_LARGEST_DRIFT]:
-            found[_LARGEST_DRIFT] = abs(found[_DRIFT])
+        found[_LARGEST_DRIFT] = max(found[_LARGEST_DRIFT], abs(found[_DRIFT]))
         last[2], last[3], last[4] = time, phi, rate
     return slips
