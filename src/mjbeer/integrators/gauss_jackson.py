@@ -38,8 +38,6 @@ from mjbeer.integrators.dynamics import (
 from mjbeer.integrators.uneven_time import (
     BLOCK,
     COUNT,
-    END_PLACE,
-    END_RATE,
     FARTHEST,
     LAG,
     Line,
@@ -61,12 +59,11 @@ _ITERATIONS = 30
 """Largest number of iterations of the first steps; a timestep that is not too long takes five to eight."""
 _STARTED = 1e-9
 """Largest change of the first accelerations in the last iteration, over the largest of them."""
-_PREDICT_RATE, _PREDICT = weights(1, -1), weights(2, -1)
-_CORRECT_RATE, _CORRECT = weights(1, 0), weights(2, 0)
-_FIRST_RATE, _FIRST_PLACE = (np.stack([weights(power, back) for back in range(COUNT - 1, -1, -1)]) for power in (1, 2))
-_MIDDLE_RATE, _MIDDLE_PLACE = _FIRST_RATE[_MIDDLE].copy(), _FIRST_PLACE[_MIDDLE].copy()
-_FIRST_PLACE -= _MIDDLE_PLACE + np.arange(-_MIDDLE, _MIDDLE + 1)[:, None] * _MIDDLE_RATE
-_FIRST_RATE -= _MIDDLE_RATE
+_RATE, _PLACE = (np.stack([weights(power, back) for back in range(-1, COUNT)]) for power in (1, 2))
+_NEXT, _LAST, _READ, _START = np.array([-1, 0, LAG, _MIDDLE]) + 1
+"""Rows of these weights, for so many steps back; a plain number would compile `weighted` once for each of them."""
+_FIRST_RATE = _RATE[:0:-1] - _RATE[_START]
+_FIRST_PLACE = _PLACE[:0:-1] - (_PLACE[_START] + np.arange(-_MIDDLE, _MIDDLE + 1)[:, None] * _RATE[_START])
 """Weights of the first accelerations in how rates and places differ from those at the start, in a row for each step."""
 _OUTWARDS = np.argsort(np.abs(np.arange(COUNT) - _MIDDLE), stable=True)
 """The first steps in the order in which an iteration takes them: the start, then one before it and one after it..."""
@@ -164,11 +161,11 @@ def _begin(pointers, views, own, start, step, gains, pulls):
         error = largest = 0.0
         for order in range(COUNT):
             k = _OUTWARDS[order]
-            angle = phi + step * ((k - _MIDDLE) * rate + step * weighted(_FIRST_PLACE[k], gains, end))
+            angle = phi + step * ((k - _MIDDLE) * rate + step * weighted(_FIRST_PLACE, k, gains, end))
             if by_law:
                 gain = own.law[0] + own.law[1] * math.cos(angle) + own.law[2] * math.sin(angle)
             else:
-                turning = rate + step * weighted(_FIRST_RATE[k], gains, end)
+                turning = rate + step * weighted(_FIRST_RATE, k, gains, end)
                 gain, pulls[k] = _accelerations(pointers, views, own, angle, turning)
                 evaluations += 1
             error = max(error, abs(gain - gains[k]))
@@ -183,9 +180,9 @@ def _begin(pointers, views, own, start, step, gains, pulls):
         before = error
     if by_law or not error <= _STARTED * largest:
         evaluations = 0
-    first = rate / step - weighted(_MIDDLE_RATE, gains, end)
+    first = rate / step - weighted(_RATE, _START, gains, end)
     # The formulas have the sums up to the last acceleration: first = rate, second = place + (1 + back) first.
-    return evaluations, first, phi / (step * step) - weighted(_MIDDLE_PLACE, gains, end) + (1 + _MIDDLE) * first
+    return evaluations, first, phi / (step * step) - weighted(_PLACE, _START, gains, end) + (1 + _MIDDLE) * first
 
 
 @inner
@@ -221,7 +218,7 @@ def _advance(pointers, views, own, forcing, step, work, times, samples, kept, pl
     status, end, evaluations, row = BLOCK_END, gains.size - BLOCK, 0, 0
     if back == _MIDDLE:
         evaluations, total, double = _begin(pointers, views, own, before, step, gains, pulls)
-        first, second, row = (total, 0.0), (double, 0.0), 1 if kept_times.size > 0 else 0
+        first, second, row = (total, 0.0), (double, 0.0), 1
         if evaluations == 0:
             status = NOT_FINITE
         elif sample == times.size:
@@ -230,29 +227,29 @@ def _advance(pointers, views, own, forcing, step, work, times, samples, kept, pl
         if back > LAG:  # the first steps are there already
             back -= 1
         else:
-            phi = step * step * (second[0] + weighted(_PREDICT, gains, end))
-            rate = step * (first[0] + weighted(_PREDICT_RATE, gains, end))
+            phi = step * step * (second[0] + weighted(_PLACE, _NEXT, gains, end))
+            rate = step * (first[0] + weighted(_RATE, _NEXT, gains, end))
             gain, predicted, end = 0.0, phi, end + 1
             for _ in range(2 - own.lawful):
                 predicted = phi
                 gain, pulls[end - 1] = _accelerations(pointers, views, own, phi, rate)
                 gains[end - 1] = gain
                 evaluations += 1
-                phi = step * step * (second[0] + weighted(_CORRECT, gains, end))
-                rate = step * (first[0] + gain + weighted(_CORRECT_RATE, gains, end))
+                phi = step * step * (second[0] + weighted(_PLACE, _LAST, gains, end))
+                rate = step * (first[0] + gain + weighted(_RATE, _LAST, gains, end))
             if own.lawful:
                 gain += (own.law[2] * math.cos(predicted) - own.law[1] * math.sin(predicted)) * (phi - predicted)
             gain += forcing
             gains[end - 1] = gain
             first = kahan_add(first, gain)
             second = kahan_add(second, first[0])
-            if not (abs(gain) < np.inf and abs(phi) < LARGEST and abs(rate) * step < FARTHEST):
+            if not (abs(phi) < LARGEST and abs(rate) * step < FARTHEST):
                 status = NOT_FINITE
                 break
         line = Line(curve, first[0], second[0], step, back + 1.0)
         if back == LAG:
-            phi = step * step * (line.second - line.back * line.first + weighted(END_PLACE, gains, end))
-            after = phi, step * (line.first + weighted(END_RATE, gains, end)), dt_ds(own, phi)
+            phi = step * step * (line.second - line.back * line.first + weighted(_PLACE, _READ, gains, end))
+            after = phi, step * (line.first + weighted(_RATE, _READ, gains, end)), dt_ds(own, phi)
             span = whole(own, gains, end, line)
         else:
             fit_phi(line, gains, end)
@@ -260,9 +257,10 @@ def _advance(pointers, views, own, forcing, step, work, times, samples, kept, pl
             span = duration(own, line, 1.0)
         # It hardly changes, but for rounding: most where the load is fastest, and so the pace is slowest.
         pulled = (before[2] * pulls[end - 2 - back] + after[2] * pulls[end - 1 - back]) / (before[2] + after[2])
-        if back == LAG and times[sample] <= (clock[0] + span) * (1 + 1e-14):
+        last = (clock[0] + span) * (1 + 1e-14)
+        if back == LAG and times[sample] <= last:
             fit_phi(line, gains, end)
-        while sample < times.size and times[sample] <= (clock[0] + span) * (1 + 1e-14):
+        while sample < times.size and times[sample] <= last:
             since = times[sample] - clock[0]
             at = find(own, line, before, after, span, since)
             _write(own, at, since, slide[0], speed[0], pulled, samples, sample)

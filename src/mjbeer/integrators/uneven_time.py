@@ -130,22 +130,21 @@ def _between() -> np.ndarray:
 
 
 _BETWEEN = _between()
-END_RATE, END_PLACE = weights(1, LAG), weights(2, LAG)
 
 
 @inline
-def weighted(weights, accelerations, end):
-    """Return the weighted sum of the `COUNT` accelerations before index `end`, four by four, so that terms overlap.
+def weighted(weights, row, gains, end):
+    """Return the sum of the `COUNT` gains before index `end`, with a row of weights: four by four, to overlap.
 
     The order is written out: a compiler that may choose it gives other digits where it reads its cache.
     """
-    first, second, third, fourth = weights[COUNT - 1] * accelerations[end - 1], 0.0, 0.0, 0.0
+    first, second, third, fourth = weights[row, COUNT - 1] * gains[end - 1], 0.0, 0.0, 0.0
     for k in range(0, COUNT - 1, 4):
-        row = end - COUNT + k
-        first += weights[k] * accelerations[row]
-        second += weights[k + 1] * accelerations[row + 1]
-        third += weights[k + 2] * accelerations[row + 2]
-        fourth += weights[k + 3] * accelerations[row + 3]
+        i = end - COUNT + k
+        first += weights[row, k] * gains[i]
+        second += weights[row, k + 1] * gains[i + 1]
+        third += weights[row, k + 2] * gains[i + 2]
+        fourth += weights[row, k + 3] * gains[i + 3]
     return (first + second) + (third + fourth)
 
 
@@ -182,7 +181,7 @@ def whole(own, gains, end, line):
     """Return the time [s] that passes in the step that ends `LAG` steps before the last one."""
     passed = 0.0
     for k in range(own.points.size):
-        place = line.second - (LAG + 2 - own.points[k]) * line.first + weighted(own.within[k], gains, end)
+        place = line.second - (LAG + 2 - own.points[k]) * line.first + weighted(own.within, k, gains, end)
         passed += own.weights[k] * dt_ds(own, line.step * line.step * place)
     return line.step * passed
 
