@@ -43,10 +43,7 @@ _WITHOUT_PASSIVE = (
 
 @contextmanager
 def _announced() -> Generator[None]:
-    """Say, if somebody may see it, that numba compiles in the block, and does not read its cache, after a second.
-
-    The garbage collector, which would find nothing in a tenth of that time, rests.
-    """
+    """Say, if somebody may see it, that numba compiles in the block, and does not read its cache, after a second."""
 
     def say() -> None:
         from mjbeer.output import terminal  # which takes a tenth of a second to import
@@ -55,9 +52,9 @@ def _announced() -> Generator[None]:
             terminal.say("mjbeer: compiling this integrator for this machine, once: up to 4 s")
 
     timer, collects = threading.Timer(1.0, say), gc.isenabled()
-    gc.disable()
     with event.install_recorder("numba:compile") as begun:
         timer.start()
+        gc.disable()  # it would take a tenth of the compiler's time, and find nothing
         try:
             yield
         finally:
@@ -173,10 +170,7 @@ def accelerate(pointers):
 
 @inline
 def derivative(pointers, views, state, out):
-    """Write the time derivative of a state to `out`.
-
-    `views` are qpos, qvel and acceleration in the data, and which of qpos are needed.
-    """
+    """Write the time derivative of a state to `out`. `views` are qpos, qvel, acceleration and which qpos are needed."""
     qpos, qvel, qacc, needed = views
     n = qpos.size
     for i in range(n):

@@ -30,7 +30,6 @@ from mjbeer.integrators.dynamics import (
     Dynamics,
     accelerate,
     compiled,
-    inline,
     inner,
     run_blocks,
     small,
@@ -61,7 +60,7 @@ _STARTED = 1e-9
 """Largest change of the first accelerations in the last iteration, over the largest of them."""
 _RATE, _PLACE = (np.stack([weights(power, back) for back in range(-1, COUNT)]) for power in (1, 2))
 _NEXT, _LAST, _READ, _START = np.array([-1, 0, LAG, _MIDDLE]) + 1
-"""Rows of these weights, for so many steps back; a plain number would compile `weighted` once for each of them."""
+"""Rows of these weights, for so many steps back. For each plain number `weighted` would be compiled once more."""
 _FIRST_RATE = _RATE[:0:-1] - _RATE[_START]
 _FIRST_PLACE = _PLACE[:0:-1] - (_PLACE[_START] + np.arange(-_MIDDLE, _MIDDLE + 1)[:, None] * _RATE[_START])
 """Weights of the first accelerations in how rates and places differ from those at the start, in a row for each step."""
@@ -117,24 +116,22 @@ class GaussJackson:
         if size > 1:
             slide = float(start[0]) - own.share * math.sin(phi)
             speed = float(start[size]) - own.share * math.cos(phi) * phi_dot
-        none, sums = (0.0, 0.0), ((slide, 0.0), (speed, 0.0))
         work = *np.zeros((2, COUNT + BLOCK)), np.empty(COUNT + 14)
-        pointers, (*views, _) = self._dynamics.kernel
-        views[0][:] = views[1][:] = 0.0
-        fixed = pointers, tuple(views), own, forcing, timestep, work, times, samples, kept
-        place = 0.0, _MIDDLE, sample, (phi, phi_dot * pace, pace), (none, none, none, *sums)
+        self._dynamics.data.qpos[:] = self._dynamics.data.qvel[:] = 0.0
+        sums = tuple((each, 0.0) for each in (0.0, 0.0, 0.0, slide, speed))
+        fixed = *self._dynamics.kernel, own, forcing, timestep, work, times, samples, kept
+        place = 0.0, _MIDDLE, sample, (phi, phi_dot * pace, pace), sums
         self.evaluations, _ = run_blocks("GaussJackson", _advance, fixed, place, limit, observer)
         return samples
 
 
-@inline
+@inner
 def _accelerations(pointers, views, own, phi, rate):
     """Return the second derivative of phi in the method's own time, and that of the slide less its share in time.
 
-    `pointers` are those of `accelerate`, and `views` qpos, qvel and acceleration in the data, with the slide at rest at
-    its origin.
+    `pointers` and `views` are those of `derivative`; the slide is at rest at its origin.
     """
-    qpos, qvel, qacc = views
+    qpos, qvel, qacc, _ = views
     last = qpos.size - 1
     sin, cos = math.sin(own.turns * phi), math.cos(own.turns * phi)
     square = own.even + own.uneven * sin * sin
@@ -171,8 +168,6 @@ def _begin(pointers, views, own, start, step, gains, pulls):
             error = max(error, abs(gain - gains[k]))
             largest = max(largest, abs(gain))
             gains[k] = gain
-        if not error < np.inf:
-            break
         if error <= 1e-16 * largest or (error >= before and error <= _STARTED * largest):
             if not by_law:
                 break
@@ -204,8 +199,8 @@ def _advance(pointers, views, own, forcing, step, work, times, samples, kept, pl
     """Take up to a block of steps, and return the status, the new place, and the numbers of evaluations and rows kept.
 
     `work` has the last second derivatives of phi, and the accelerations of the slide less its share, and space for the
-    coefficients of phi in a step and for two states. The rows of `samples` whose `times` [s] are passed are filled in,
-    and times and states at the ends of steps are `kept`, after the start, if that has room.
+    coefficients of phi in a step. The rows of `samples` whose `times` [s] are passed are filled in, and times and
+    states at the ends of steps are `kept`, after the start, if that has room.
 
     `place` is the time [s] that is passed, how many steps back the last step is read off, the next sample, the node
     there, and five sums with what rounding took from each: both sums of the accelerations, and time, place and velocity

@@ -133,18 +133,18 @@ _BETWEEN = _between()
 
 
 @inline
-def weighted(weights, row, gains, end):
-    """Return the sum of the `COUNT` gains before index `end`, with a row of weights: four by four, to overlap.
+def weighted(weights, row, accelerations, end):
+    """Return the sum of the `COUNT` accelerations before index `end`, with a row of weights, in four sums that overlap.
 
     The order is written out: a compiler that may choose it gives other digits where it reads its cache.
     """
-    first, second, third, fourth = weights[row, COUNT - 1] * gains[end - 1], 0.0, 0.0, 0.0
+    first, second, third, fourth = weights[row, COUNT - 1] * accelerations[end - 1], 0.0, 0.0, 0.0
     for k in range(0, COUNT - 1, 4):
         i = end - COUNT + k
-        first += weights[row, k] * gains[i]
-        second += weights[row, k + 1] * gains[i + 1]
-        third += weights[row, k + 2] * gains[i + 2]
-        fourth += weights[row, k + 3] * gains[i + 3]
+        first += weights[row, k] * accelerations[i]
+        second += weights[row, k + 1] * accelerations[i + 1]
+        third += weights[row, k + 2] * accelerations[i + 2]
+        fourth += weights[row, k + 3] * accelerations[i + 3]
     return (first + second) + (third + fourth)
 
 

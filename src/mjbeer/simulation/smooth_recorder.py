@@ -38,14 +38,14 @@ class SmoothRecorder(Recorder):
             # Friction over drive, over the force of the swinging load, and over phi_ddot.
             *((turning / mass, turning / mass, 0.0) if sliding else (1.0, 1.0, -scene.mass * can.radius)),
         )
-        self._found, self._work = np.zeros(len(_NAMES)), (np.zeros(_CHANGES), np.empty(_SIZES), np.zeros(5))
+        self._found, self._work, self._before = np.zeros(len(_NAMES)), np.zeros((2, _SIZES)), (0.0,) * 5
         self._found[_LOWEST] = math.inf
         self._end = np.empty(0), np.empty((0, 2 * model.nv))
 
     def __call__(self, times: np.ndarray, states: np.ndarray) -> None:
         """Add the next steps."""
         record, last = self.record, self._end
-        row = _update(self._numbers, times, states, self._found, *self._work)
+        row, self._before = _update(self._numbers, times, states, self._found, *self._work, self._before)
         vars(record).update(zip(_NAMES, self._found.tolist(), strict=True))
         self._end = times[-1:].copy(), states[-1:].copy()
         if row < len(times) and record.rolling_ends_at == math.inf:
@@ -57,29 +57,30 @@ class SmoothRecorder(Recorder):
 
 
 @compiled()
-def _update(numbers, times, states, found, start, now, last):
+def _update(numbers, times, states, found, start, now, before):
     """Add states at `times` [s] to what was `found`, as `Record.add` does, and return the first row that cannot roll.
 
-    The forces are those of a state and of the middle since the one before. `now` is space for what a state has, `start`
-    for what the first one had, and `last` for phi0, the speed of the axis at the start less its swing, and time, phi
-    and its rate at the last state.
+    The forces are those of a state and of the middle since the one before. `now` is space for what a state has, and
+    `start` for what the first one had. What was `before`, and is returned anew, are phi0, the speed of the axis at the
+    start less its swing, and time, phi and its rate at the last state.
     """
     small()
     base, chord, coupling, ramp, lean, weight, unit, can_mass, load_mass, offset, load_inertia = numbers[:11]
     down, normally, all_mass, arm, drive, steady, friction, by_drive, by_swing, by_turning = numbers[11:]
     size, moment, slips = states.shape[1] // 2, load_mass * offset, times.size
+    phi0, speed0, last, last_phi, last_rate = before
     for row in range(times.size):
         time, phi, rate = times[row], states[row, size - 1], states[row, 2 * size - 1]
         u, speed = unit * states[row, 0], unit * states[row, size]
         if time == 0.0:
-            last[0], last[1], last[2], last[3], last[4] = phi, speed - arm * math.cos(phi) * rate, time, phi, rate
+            phi0, speed0, last, last_phi, last_rate = phi, speed - arm * math.cos(phi) * rate, time, phi, rate
         sin = cos = square = inertia = 0.0
         for part in range(2):  # in the middle since the last state, and at this one
             angle, turning = phi, rate
             if part == 0:  # which the start has not: its numbers are NaN, and do not count
-                step = time - last[2]
-                angle = (phi + last[3]) / 2 + step * (last[4] - rate) / 8
-                turning = 1.5 * (phi - last[3]) / step - (rate + last[4]) / 4
+                step = time - last
+                angle = (phi + last_phi) / 2 + step * (last_rate - rate) / 8
+                turning = 1.5 * (phi - last_phi) / step - (rate + last_rate) / 4
             sin, cos, square = math.sin(angle), math.cos(angle), turning * turning
             inertia = base + chord * (1 - cos) / 2 + coupling * sin * sin
             torque = ramp - weight * sin + lean * cos - sin * (chord / 4 + coupling * cos) * square
@@ -94,21 +95,20 @@ def _update(numbers, times, states, found, start, now, last):
                 slips = row
         along, across = speed - offset * cos * rate, offset * sin * rate
         kinetic = (can_mass * speed * speed + load_mass * (along * along + across * across) + load_inertia * square) / 2
-        middle, half = (phi + last[0]) / 2, (phi - last[0]) / 2
+        middle, half = (phi + phi0) / 2, (phi - phi0) / 2
         torque = weight * math.sin(middle) - lean * math.cos(middle)
         now[0], now[1], now[5], now[6], now[7] = phi, u, rate, inertia * square / 2, kinetic
         now[2] = kinetic - all_mass * u * down - moment * (normally * cos - down * sin)
         now[3] = now[6] - 2 * ramp * half + 2 * torque * math.sin(half)
-        now[4] = u - arm * sin - time * (last[1] + steady * time / 2) if size > 1 else 0.0
+        now[4] = u - arm * sin - time * (speed0 + steady * time / 2) if size > 1 else 0.0
         for k in range(now.size):
-            if k < start.size:
-                if time == 0.0:
-                    start[k] = now[k]
-                now[k] -= start[k]
+            if time == 0.0 and k < _CHANGES:
+                start[k] = now[k]
+            now[k] -= start[k]
             found[k] = max(found[k], abs(now[k]))
-        covered = abs(phi - last[3])
+        covered = abs(phi - last_phi)
         found[_COVERED] += covered
         found[_DRIFT] += now[3] * covered
         found[_LARGEST_DRIFT] = max(found[_LARGEST_DRIFT], abs(found[_DRIFT]))
-        last[2], last[3], last[4] = time, phi, rate
-    return slips
+        last, last_phi, last_rate = time, phi, rate
+    return slips, (phi0, speed0, last, last_phi, last_rate)
