@@ -49,7 +49,7 @@ def _announced() -> Generator[None]:
         from mjbeer.output import terminal  # which takes a tenth of a second to import
 
         if begun.buffer and (terminal.STDERR.is_terminal or terminal.STDERR.is_jupyter):
-            terminal.say("mjbeer: compiling this integrator for this machine, once: up to 4 s")
+            terminal.say("mjbeer: compiling this integrator for this machine, once: some 3 s")
 
     timer, collects = threading.Timer(1.0, say), gc.isenabled()
     with event.install_recorder("numba:compile") as begun:
