@@ -84,9 +84,10 @@ def samples(name: str, value: Any, unit: str = "") -> np.ndarray:
 def times(name: str, value: Any, increasing: bool = False) -> np.ndarray:
     """Return times [s], none before 0, or a single one, as a new array of shape (samples,)."""
     array = samples(name, np.atleast_1d(value), "s").copy()
-    non_negative(f"{name}[{array.argmin()}]", array.min(), "s")
-    if increasing and (steps := np.diff(array, prepend=-1)).min() <= 0:  # the first step is no fall
-        at = steps.argmin()
+    if array.min() < 0:
+        non_negative(f"{name}[{array.argmin()}]", array.min(), "s")
+    if increasing and ((steps := array[1:] - array[:-1]) <= 0).any():
+        at = steps.argmin() + 1
         raise ParameterError(f"{name} must increase, but {name}[{at}] is {array[at]} s after {array[at - 1]} s")
     return array
 

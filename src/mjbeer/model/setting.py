@@ -87,7 +87,8 @@ def supported(scene: Scene, rolling: str) -> bool:
 
 def mjcf_folder(own: str | os.PathLike[str] | None = None) -> pathlib.Path:
     """Return the folder of the MJCF: one's `own`, or that of the environment, or mjbeer's."""
-    folder = os.environ.get("MJBEER_MJCF", _SHIPPED) if own is None else own
-    if not isinstance(folder, (str, os.PathLike)) or not os.path.isdir(folder):
-        raise ParameterError(f"mjcf must be a folder of mechanics and looks, got {require.format_value(folder)}")
-    return pathlib.Path(folder)
+    if own is None and (own := os.environ.get("MJBEER_MJCF")) is None:
+        return _SHIPPED
+    if not isinstance(own, (str, os.PathLike)) or not os.path.isdir(own):
+        raise ParameterError(f"mjcf must be a folder of mechanics and looks, got {require.format_value(own)}")
+    return pathlib.Path(own)
