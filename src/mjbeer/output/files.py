@@ -1,13 +1,11 @@
 """What an interruption leaves: files that are whole or not there, and no process."""
 
-import multiprocessing
 import os
 import pathlib
 import secrets
 import signal
 import threading
 from collections.abc import Generator
-from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from typing import Any
 
@@ -80,6 +78,9 @@ def pool(most: int) -> Generator[Any]:
 
     At the end of the block, or when it is interrupted, the processes are ended.
     """
+    import multiprocessing  # here, as `import mjbeer` would take a fifth longer
+    from concurrent.futures import ProcessPoolExecutor
+
     # Not forked: a copy of a process with several threads may hang, and a copy of OpenGL is of no use.
     # Threads for linear algebra would take the cores from other processes; NumPy asks when it is loaded.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -97,6 +98,8 @@ def pool(most: int) -> Generator[Any]:
 
 def _follow_parent() -> None:
     """Make this process leave interruptions to its parent, and end when the parent does, even if that is killed."""
+    import multiprocessing
+
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     parent: Any = multiprocessing.parent_process()
 

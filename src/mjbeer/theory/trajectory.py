@@ -12,7 +12,6 @@ from numpy.typing import ArrayLike
 
 from mjbeer import require
 from mjbeer.exceptions import MjbeerError, ParameterError
-from mjbeer.output import files
 from mjbeer.theory import damped_motion, equations, motion
 from mjbeer.theory.equations import Coordinates, Forces, accelerations, axis_motion, rolling_forces, select_samples
 from mjbeer.theory.liquid import lump_warning
@@ -177,6 +176,8 @@ class Trajectory(Coordinates):
         Raises:
           OutputError: if the file cannot be written.
         """
+        from mjbeer.output import files
+
         files.write(require.path(path), csv(self))
 
     def __repr__(self) -> str:
