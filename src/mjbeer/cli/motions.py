@@ -125,7 +125,11 @@ def simulate(given: Namespace) -> None:
     if to_output and given.json:
         raise ParameterError("standard output takes one of them: the JSON, or the CSV of --output -")
     with files.atomic_write(given.output) if given.output and not to_output else nullcontext() as temporary:
-        summary = Summary(trajectory_of(given), given.friction)
+        with terminal.status("simulating"):
+            summary = Summary(trajectory_of(given), given.friction)
+        if summary.trajectory.timestep is not None:
+            with terminal.status("estimating the error by a second run, which takes up to three times as long"):
+                _ = summary.trajectory.error_estimate
         if temporary:
             temporary.write_text(csv(summary.trajectory), encoding="utf-8")
     if temporary:

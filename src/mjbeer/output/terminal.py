@@ -64,6 +64,16 @@ def say(text: str, style: str = "") -> None:
 
 
 @contextmanager
+def status(text: str) -> Generator[None]:
+    """Show on a terminal what is being done in the block; the line goes when it ends."""
+    if STDERR.is_terminal:
+        with STDERR.status(escape(text)):
+            yield
+    else:
+        yield
+
+
+@contextmanager
 def progress_bar(console: Console | None, total: int) -> Generator[Callable[[str], None]]:
     """Yield a function to be called at the start of each of `total` pieces of work, with the name of the piece.
 

@@ -122,11 +122,18 @@ class Recorder:
         rates = motion.phi_dot, motion.u_dot
         gains = accelerations(self._scene, motion.phi, *rates)[::-1]
         ends = np.concatenate([self._last, np.stack([motion.time, motion.phi, motion.u, *rates, *gains])], axis=1)
+        if self._last.shape[1] == 0:
+            start = Coordinates(**{name: array[:1] for name, array in vars(motion).items()})
+            self.record.add_forces(start.time, start.phi, start.phi_dot, start.u_dot)
         self._last = ends[:, -1:]
-        self.record.add_forces(*_between(ends[0], *ends[1:].reshape(3, 2, -1)))
+        if len(ends[0]) > 1:
+            self.record.add_forces(*_between(ends[0], *ends[1:].reshape(3, 2, -1)))
 
 
-_PART = np.arange(1, 9)[:, None] / 8  # a step of DOP853 may be half a swing long
+_PARTS = 32
+"""Points in a step at which forces are looked for. A step of DOP853 may be half a swing long, in which N varies by its
+own size; between two of the points its extreme is then a thousandth of that beyond the larger one, (pi/64)^2/2."""
+_PART = np.arange(1, _PARTS + 1)[:, None] / _PARTS
 _POWER = np.arange(1, 6)
 _ENDS = [[1, 1, 1, 1, 1], [1, 0, 0, 0, 0], [0, 2, 0, 0, 0], [1, 2, 3, 4, 5], [0, 2, 6, 12, 20]]
 _CHANGES, _RATES = (each @ np.linalg.inv(_ENDS) for each in (_PART**_POWER, _POWER * _PART ** (_POWER - 1)))
@@ -135,12 +142,10 @@ and the rates and the second derivatives at its ends."""
 
 
 def _between(time: np.ndarray, place: np.ndarray, rate: np.ndarray, gain: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Return times [s], phi, phi_dot and u_dot within steps, or at a single end.
+    """Return times [s], phi, phi_dot and u_dot within steps, and at their ends but the first.
 
     Both coordinates and their derivatives at the ends have shape (2, ends).
     """
-    if len(time) == 1:
-        return time, place[0], *rate
     step = np.diff(time)
     first, bend = step * rate[:, :-1], step**2 * gain[:, :-1]
     last, bent = step * rate[:, 1:], step**2 * gain[:, 1:]

@@ -3,18 +3,19 @@
 import math
 import os
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from mjbeer import require
-from mjbeer.exceptions import DivergenceError, LiquidWarning, ParameterError, UntrustedWarning
+from mjbeer.exceptions import DivergenceError, LiquidWarning, ParameterError, ToleranceError, UntrustedWarning
 from mjbeer.model.joints import joint_addresses, to_coordinates
 from mjbeer.model.setting import FRICTION, OWN, Integrator, Rolling, Setting
 from mjbeer.simulation.simulator import Simulator
 from mjbeer.theory.equations import Coordinates
+from mjbeer.theory.oscillator import reduced
 from mjbeer.theory.record import ERROR, Record, failed_checks, rolling_failures
 from mjbeer.theory.scene import DURATION, PHI0, Scene
 from mjbeer.theory.trajectory import Trajectory, distance
@@ -59,7 +60,8 @@ class Run(Trajectory):
     error: float | None
     """The error that was estimated on the way to a tolerance [rad]; None without one."""
     checkpoints: Coordinates
-    """The motion at its samples and at times that are spread over the whole run, where a second run is compared."""
+    """The motion as it was stepped, from `phi0` less its whole turns, at the samples and at times that are spread over
+    the whole run, where a second run is compared."""
 
     def __post_init__(self) -> None:
         """Check nothing: the start is checked before a run, and its samples are finite after it."""
@@ -89,7 +91,7 @@ class Run(Trajectory):
         if friction == self.record.friction:
             return self.record.rolling_ends_at
         simulator = Simulator(self.scene, self.setting)
-        start = simulator.initial_state(self.phi0, self.phi_dot0)
+        start = simulator.initial_state(reduced(self.phi0), self.phi_dot0)
         record = simulator.solve(start, self.checkpoints.time, friction).record
         assert record is not None
         return record.rolling_ends_at
@@ -98,10 +100,20 @@ class Run(Trajectory):
     def error_estimate(self) -> float:
         """Return the estimated global error of phi and u/a [rad], relative to the angle where that exceeds 1 rad.
 
-        It rests on the largest distance from a second run. Without a tolerance the first access makes that, in twice
-        the time of this one; the error is infinite if it diverges.
+        It rests on the largest distance from a second run. Without a tolerance the first access makes that run, which
+        takes up to three times as long as this one; the error is infinite if it diverges. In a contact the slip and the
+        depth of the can, both in radii, are added: a can that has slid is elsewhere by as much, and one that has sunk
+        in rolls on a smaller radius. A start beyond half a turn adds the rounding of its whole turns.
         """
-        return compare_uneven(self) if self.error is None else self.error
+        error = compare_uneven(self) if self.error is None else self.error
+        if self.rolling == "contact":
+            error += (self.record.slip + self.record.lift) / self.scene.can.radius
+        return error + _turns_rounding(self.phi0)
+
+    @property
+    def trusted(self) -> bool:
+        """Return whether there are no warnings; with a fixed timestep this needs `error_estimate`'s run."""
+        return not self.warnings
 
     @cached_property
     def failed_checks(self) -> tuple[str, ...]:
@@ -143,22 +155,23 @@ def compare_uneven(run: Run) -> float:
     effect of their softness. It begins a little aside, which adds that of rounding, and of a contact's depth.
     """
     scene, setting, motion = run.scene, run.setting, run.checkpoints
+    phi0 = reduced(run.phi0)
     simulator = Simulator(scene, setting, uneven=True)
-    start = simulator.initial_state(run.phi0 + _START_OFFSET, run.phi_dot0)
+    start = simulator.initial_state(phi0 + _START_OFFSET, run.phi_dot0)
     if setting.rolling == "contact":
         start[joint_addresses(simulator.model)["lift"]] *= _DEPTH
     try:
         states = simulator.solve(start, motion.time).states
     except DivergenceError:
         return math.inf
-    begin = run.phi0, scene.start(run.phi0, run.phi_dot0)[0]
+    begin = phi0, scene.start(phi0, run.phi_dot0)[0]
     uneven = to_coordinates(simulator.model, scene, states, motion.time)
     return _OVER_DISTANCE * distance(motion, uneven, scene.can.radius, begin)
 
 
 def simulate(
     scene: Scene,
-    duration: float = DURATION,
+    duration: float | None = None,
     phi0: float = PHI0,
     phi_dot0: float = 0.0,
     rolling: Rolling = "reduced",
@@ -173,7 +186,8 @@ def simulate(
 
     Args:
       scene: what rolls.
-      duration: how long [s]; samples at every timestep end with the first one at or after it.
+      duration: how long [s], 2 s if there are no `times` either; samples at every timestep end with the first one at
+        or after it.
       phi0: angle of the load to the incline at the start [rad].
       phi_dot0: its rate at the start [rad/s].
       rolling: how the can is made to roll, as in `build`: "reduced", "equality" or "contact".
@@ -197,12 +211,13 @@ def simulate(
       ToleranceError: if the tolerance is not reached.
     """
     require.instance("scene", scene, Scene)
-    duration = require.positive("duration", duration, "s")
+    if duration is not None:
+        duration = require.positive("duration", duration, "s")
     phi0, phi_dot0 = require.start(phi0, phi_dot0)
     require.warn_of_degrees(phi0)
     setting = Setting.of(integrator, tolerance, rolling=rolling, timestep=timestep, friction=friction, mjcf=mjcf)
     if times is None:
-        sample_times = _every_step(duration, setting.timestep)
+        sample_times = _every_step(DURATION if duration is None else duration, setting.timestep)
     else:
         sample_times = _sample_times(duration, setting, require.times("times", times, increasing=True))
     run = integrate(scene, phi0=phi0, phi_dot0=phi_dot0, setting=setting, times=sample_times)
@@ -226,10 +241,10 @@ def _every_step(duration: float, timestep: float) -> np.ndarray:
     return timestep * np.arange(last + 1)
 
 
-def _sample_times(duration: float, setting: Setting, times: np.ndarray) -> np.ndarray:
+def _sample_times(duration: float | None, setting: Setting, times: np.ndarray) -> np.ndarray:
     """Return the times of the samples [s], which for MuJoCo's integrators are exact multiples of the timestep."""
     timestep = setting.timestep
-    if times[-1] > duration * (1 + _ON_A_STEP):
+    if duration is not None and times[-1] > duration * (1 + _ON_A_STEP):
         raise ParameterError(f"times must be between 0 and the duration {duration!r} s, got {times[-1]} s")
     if setting.tolerance is not None:
         return times
@@ -260,12 +275,29 @@ def integrate(scene: Scene, phi0: float, phi_dot0: float, setting: Setting, time
         along = np.sort(np.concatenate([times, checkpoints[checkpoints <= times[-1]]]))
         along = along[np.diff(along, prepend=-1.0) > 0]  # unlike union1d it does not import masked arrays
         samples = np.searchsorted(along, times)
-    simulator = Simulator.kept(scene, setting)
-    solution = simulator.solve(simulator.initial_state(phi0, phi_dot0), along, friction=math.inf)
+    near_phi0 = reduced(phi0)
+    rounding = _turns_rounding(phi0)
+    stepped = setting
+    if setting.tolerance is not None and rounding > 0:
+        if setting.tolerance <= rounding:
+            raise ToleranceError(
+                f"tolerance {setting.tolerance:g} rad is not reached: doubles near phi0 = {phi0!r} rad have errors of "
+                f"up to {rounding:.2g} rad; start less whole turns away"
+            )
+        stepped = replace(setting, tolerance=setting.tolerance - rounding)
+    simulator = Simulator.kept(scene, stepped)
+    solution = simulator.solve(simulator.initial_state(near_phi0, phi_dot0), along, friction=math.inf)
     motion = to_coordinates(simulator.model, scene, solution.states, along)
     assert solution.record is not None
+    arrays = {name: array[samples] for name, array in vars(motion).items()}
+    if rounding > 0:
+        turns = phi0 - near_phi0
+        arrays["phi"] += turns
+        if scene.attachment == "frozen":  # u = a phi, and the can turns with its load
+            arrays["u"] += scene.can.radius * turns
+            arrays["roll"] += turns
     return Run(
-        **{name: array[samples] for name, array in vars(motion).items()},
+        **arrays,
         scene=scene,
         phi0=phi0,
         phi_dot0=phi_dot0,
@@ -275,3 +307,12 @@ def integrate(scene: Scene, phi0: float, phi_dot0: float, setting: Setting, time
         error=solution.error,
         checkpoints=motion,
     )
+
+
+def _turns_rounding(phi0: float) -> float:
+    """Return the rounding of phi and u/a [rad] by the whole turns of a start at `phi0` [rad]; 0 up to half a turn.
+
+    Four steps of a calculation round to a double of that size: the difference of the turns, their product with the
+    radius, and either sum.
+    """
+    return 4 * float(np.spacing(abs(phi0))) if abs(phi0) > math.pi else 0.0

@@ -43,9 +43,9 @@ class Record:
 
     @classmethod
     def of(cls, motion: Coordinates, scene: Scene, friction: float = math.inf) -> "Record":
-        """Return the record of a motion whose samples are all there is; they may be in any order."""
+        """Return the record of a motion whose samples are all there is."""
         record = cls(scene, friction)
-        record.add(select_samples(motion, np.argsort(motion.time)))
+        record.add(motion)
         return record
 
     def add(self, motion: Coordinates) -> None:

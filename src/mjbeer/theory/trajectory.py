@@ -24,7 +24,8 @@ class Trajectory(Coordinates):
     """A motion of a scene, an array for each of the `Coordinates`, with the energy, forces and warnings that follow.
 
     Raises:
-      ParameterError: if an array is not finite, not one-dimensional, empty, or not as long as the times.
+      ParameterError: if an array is not finite, not one-dimensional, empty, or not as long as the times, or if the
+        times do not increase.
     """
 
     scene: Scene
@@ -42,6 +43,7 @@ class Trajectory(Coordinates):
             vars(self)[name] = samples
             if len(samples) != len(self.time):
                 raise ParameterError(f"{name} must have as many entries as time, {len(self.time)}, got {len(samples)}")
+        require.times("time", self.time, increasing=True)
 
     @property
     def rolling(self) -> str:
@@ -191,12 +193,13 @@ class Trajectory(Coordinates):
 def exact(scene: Scene, time: ArrayLike, phi0: float, phi_dot0: float = 0.0) -> Trajectory:
     """Return the exact motion of a scene that starts with `phi0` [rad] and `phi_dot0` [rad/s] at time 0.
 
-    `time` [s] has the times of the samples, in any order, none before 0. `Scene.start` has u and u_dot at time 0. A
+    `time` [s] has the increasing times of the samples, none before 0. `Scene.start` has u and u_dot at time 0. A
     start beyond a whole turn gives an `AngleWarning`, as degrees may have been meant.
 
     Raises:
-      ParameterError: if `scene` is no scene, a time is negative or not finite, the start is not between -1e4 and 1e4
-        rad or -1e6 and 1e6 rad/s, the motion has more than 1e4 turns on an incline, or is beyond double precision.
+      ParameterError: if `scene` is no scene, times are negative, not finite or not increasing, the start is not between
+        -1e4 and 1e4 rad or -1e6 and 1e6 rad/s, the motion has more than 1e4 turns on an incline, or is beyond double
+        precision.
       NoLibrationError: if the start is so near the separatrix that its rounding decides how the motion goes on.
       ToleranceError: with damping or drag, if the motion takes too many steps, or rounding of the start changes phi by
         more than 1e-4 rad; the message says until when it can be followed.
@@ -204,7 +207,7 @@ def exact(scene: Scene, time: ArrayLike, phi0: float, phi_dot0: float = 0.0) -> 
     require.instance("scene", scene, Scene)
     phi0, phi_dot0 = require.start(phi0, phi_dot0)
     require.warn_of_degrees(phi0)
-    return exact_motion(scene, require.times("time", time), phi0, phi_dot0)
+    return exact_motion(scene, require.times("time", time, increasing=True), phi0, phi_dot0)
 
 
 def exact_motion(scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float) -> Trajectory:

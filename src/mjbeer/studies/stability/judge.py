@@ -94,7 +94,7 @@ class Outcome:
     error: float = math.inf
     """Largest error of phi and u/a [rad], relative beyond 1 rad."""
     admitted: float = math.inf
-    """The run's own estimate of its error, plus slip and lift in radii [rad]."""
+    """The run's own estimate of its error [rad]."""
     says: str = ""
     """The run's warnings, or the text of the error that ended it."""
 
@@ -117,10 +117,10 @@ def judge(trial: Trial) -> Outcome:
     except REFUSALS as error:
         return Outcome(REFUSED, says=str(error))
     judges, motions, theory_distance = truth(trial.scene, run.time, trial.phi0, trial.phi_dot0)
-    radius, start = trial.scene.can.radius, _start(trial.scene, trial.phi0, trial.phi_dot0)
+    start = _start(trial.scene, trial.phi0, trial.phi_dot0)
     # Where rounding decides, each motion is that of a start which doubles cannot tell from this one.
     error = min((_off(_angles(trial.scene, run), motion, start) for motion in motions), default=math.inf)
-    admitted = run.error_estimate + (run.record.slip + run.record.lift) / radius
+    admitted = run.error_estimate
     allowed = ERROR if trial.tolerance is None else min(ERROR, trial.tolerance + theory_distance)
     if math.isinf(theory_distance):
         return Outcome(SILENT, judges, error, admitted, "two theories differ by more than rounding explains")

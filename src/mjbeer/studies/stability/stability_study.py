@@ -37,8 +37,6 @@ RUNS, FEW_RUNS = 3000, 250
 NEEDLESS, ABOVE, TWICE = "doubted, yet right", "above its estimate", "above twice"
 """Counted besides: runs that warn although their samples are right, which is no fault where a can slips or would be
 pulled; and trusted runs whose error is above what they admit, or above twice that."""
-_ROUNDING = 1e-9
-"""Errors below this [rad] are not above an estimate: a second run cannot see rounding."""
 _RULE_OF_THREE = 3.0
 """-ln(0.05): where n runs had no fault, a share of faults above 3/n would have shown one with a probability of 95 %."""
 _READ = """
@@ -95,8 +93,8 @@ def batch(first: int, size: int = SIZE) -> dict[str, Any]:
             outcome.verdict: True,
             outcome.judged_by: True,
             NEEDLESS: outcome.verdict == DOUBTED and outcome.error <= ERROR,
-            ABOVE: trusted and outcome.error > outcome.admitted + _ROUNDING,
-            TWICE: trusted and outcome.error > 2 * outcome.admitted + _ROUNDING,
+            ABOVE: trusted and outcome.error > outcome.admitted,
+            TWICE: trusted and outcome.error > 2 * outcome.admitted,
         }
         kinds.setdefault(trial.kind, Counter()).update(name for name, holds in counted.items() if holds and name)
         if outcome.verdict == SILENT:
