@@ -127,7 +127,7 @@ def _evaluate(pointers, views, tableau, state, step, stage, stages, out):
     derivative(pointers, views, out, stages[stage])
 
 
-@compiled()
+@compiled
 def _advance(pointers, views, tableau, state, new, work, stages, output, times, samples, control, kept, place):
     """Take up to a block of steps, and return the status, the new place and the numbers of evaluations and rows kept.
 

@@ -19,13 +19,15 @@ from numba.extending import intrinsic
 
 from mjbeer.exceptions import DivergenceError
 from mjbeer.integrators import Observer
+from mjbeer.integrators.kernel_cache import compile_and_keep
 from mjbeer.model.mujoco_library import address
 
 DONE, BLOCK_END, TOO_SMALL, NOT_FINITE = range(4)
 """The statuses with which a kernel can end."""
-compiled = partial(njit, cache=True, error_model="numpy", nogil=True, _nrt=False, no_cfunc_wrapper=True)
+_HOW: dict[str, Any] = {"error_model": "numpy", "nogil": True, "_nrt": False, "no_cfunc_wrapper": True}
+compiled = partial(compile_and_keep, **_HOW)
 """Compiles what allocates nothing, so that arrays need not be counted: that takes a seventh of the time of a run."""
-inner = partial(compiled, no_cpython_wrapper=True, cache=False)
+inner = partial(njit, no_cpython_wrapper=True, **_HOW)
 """Compiles what compiled code alone may call: an entry for Python and a file in the cache take time, too."""
 inline = partial(inner, forceinline=True)
 """Compiles what is called in every step into its callers: a call with so many arguments takes as long as its work."""

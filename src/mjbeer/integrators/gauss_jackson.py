@@ -194,7 +194,7 @@ def _write(own, node, since, slide, speed, pulled, states, row):
         states[row, 1 + last] = speed + since * pulled + own.share * math.cos(phi) * rate
 
 
-@compiled()
+@compiled
 def _advance(pointers, views, own, forcing, step, work, times, samples, kept, place):
     """Take up to a block of steps, and return the status, the new place, and the numbers of evaluations and rows kept.
 

@@ -56,7 +56,7 @@ class SmoothRecorder(Recorder):
             record.rolling_ends_at = min(record.rolling_ends_at, float(times[row]))
 
 
-@compiled()
+@compiled
 def _update(numbers, times, states, found, start, now, before):
     """Add states at `times` [s] to what was `found`, as `Record.add` does, and return the first row that cannot roll.
 

@@ -1,0 +1,67 @@
+"""The folder in which compiled kernels are kept: its name has a hash of all files that their code comes from.
+
+numba compiles a kernel anew when the kernel's own file has changed, and looks at no other. But what a kernel calls is
+compiled into it, as are the constants that it uses, and these lie in other files as well: after a change there numba
+would load the old code.
+"""
+
+import hashlib
+import os
+import pathlib
+import shutil
+import threading
+import time
+from collections.abc import Callable
+from typing import Any
+
+from numba import config, njit
+
+from mjbeer.model import mujoco_library
+
+SOURCES = (*sorted(pathlib.Path(__file__).parent.glob("*.py")), pathlib.Path(mujoco_library.__file__))
+"""The files from which kernels of other files take functions and constants."""
+_PREFIX = "mjbeer-"
+_UNUSED = 24 * 3600.0
+"""Time after which the folder of other sources is removed [s]. A process that has begun earlier, with those sources,
+may still compile: only if it writes at the very moment of the removal, its call ends in an error."""
+_lock = threading.Lock()
+
+
+def compile_and_keep(function: Callable[..., Any], **options: Any) -> Any:
+    """Return the kernel that numba compiles from a function when it is called, or loads from `FOLDER`.
+
+    `options` are those of `njit`. The folder is numba's setting while the kernel is made, and the user's own functions
+    are kept where the user wants them.
+    """
+    with _lock:
+        before = config.CACHE_DIR
+        config.CACHE_DIR = str(FOLDER)
+        try:
+            return njit(function, cache=True, **options)
+        finally:
+            config.CACHE_DIR = before
+
+
+def _folder() -> pathlib.Path:
+    """Return the folder for these sources, in that which numba itself would take: one that can be written to."""
+    content = hashlib.sha256()
+    for path in SOURCES:
+        content.update(path.read_bytes())
+    return pathlib.Path(njit(_folder, cache=True).stats.cache_path, _PREFIX + content.hexdigest()[:16])
+
+
+def _tidy() -> None:
+    """Make the folder, as one that is used today, and remove those of other sources that have long been unused."""
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    os.utime(FOLDER)
+    for other in FOLDER.parent.glob(f"{_PREFIX}*"):
+        try:
+            unused = time.time() - other.stat().st_mtime
+        except FileNotFoundError:  # another process removes it, too
+            continue
+        if unused > _UNUSED:
+            shutil.rmtree(other, ignore_errors=True)
+
+
+FOLDER = _folder()
+_tidy()
