@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from mjbeer.exceptions import AngleWarning, LiquidWarning, MjbeerError, UntrustedWarning
 from mjbeer.theory.can import Can, Damping, Load
 from mjbeer.theory.liquid import liquid
-from mjbeer.theory.scene import Scene, frozen, hoop, load_drawing, pendulum, sliding
+from mjbeer.theory.scene import Scene, frozen, hoop, pendulum, sliding
 from mjbeer.theory.standing import standing
 from mjbeer.theory.trajectory import Trajectory, exact
 
@@ -69,7 +69,6 @@ _LAZY = {
     "tracks.fit": ("Fit", "fit"),
     "tracks.track": ("Track", "read_track"),
 }
-load_drawing[:] = [lambda name: import_module(f"mjbeer.drawing.{name}")]
 
 
 def __getattr__(name: str) -> object:

@@ -20,7 +20,7 @@ from mjbeer.simulation import tolerance
 from mjbeer.simulation.smooth_recorder import SmoothRecorder
 from mjbeer.simulation.tolerance import pendulum_time
 from mjbeer.theory.scene import Scene
-from mjbeer.theory.trajectory import distance
+from mjbeer.theory.trajectory import largest_error
 from tests.support.scenes import METAL
 
 
@@ -56,7 +56,7 @@ def errors(scene: Scene, phi0: float, steps: np.ndarray, times: np.ndarray, own:
     own = own._replace(share=right.share) if own else right
     begin, method = initial_state(model, scene, phi0, 0.0), GaussJackson(model)
     states = (method.run(begin, times, float(step), own) for step in steps)
-    return [distance(to_coordinates(model, scene, each, times), truth, scene.can.radius) for each in states]
+    return [largest_error(to_coordinates(model, scene, each, times), truth, scene.can.radius) for each in states]
 
 
 EVEN = own_time(1.0, 0.0, 1.0)

@@ -25,7 +25,7 @@ from mjbeer.exceptions import (
 from mjbeer.model.setting import INTEGRATORS, ROLLINGS, Integrator, Rolling
 from mjbeer.simulation.simulator import Simulator
 from mjbeer.theory.oscillator import reduced
-from mjbeer.theory.trajectory import distance
+from mjbeer.theory.trajectory import largest_error
 from tests.support.scenes import METAL, SCENES, error
 
 ARRAYS = ("time", "u", "phi", "u_dot", "phi_dot", "roll", "roll_dot", "lift", "lift_dot", "energy")
@@ -166,7 +166,7 @@ def test_strong_damping_in_an_equality_is_no_alarm() -> None:
     """What it takes in a step was once known to fewer digits than the run has, and called a drift of 0.18 rad."""
     scene = sliding(can=METAL, damping=0.1)
     run = simulate(scene, 1, 1.0, rolling="equality", tolerance=7e-6, times=np.linspace(0, 1, 11))
-    assert distance(run, exact(scene, run.time, 1.0), scene.can.radius) < 7e-6
+    assert largest_error(run, exact(scene, run.time, 1.0), scene.can.radius) < 7e-6
     assert run.trusted, run.warnings
 
 
@@ -282,7 +282,7 @@ def test_the_solver_of_a_contact_does_not_take_a_light_load_for_nothing() -> Non
     run = simulate(scene, 15, -3.14, rolling="contact", integrator="DOP853", timestep=0.01)
     assert run.record.largest_turn > 1
     assert run.trusted
-    assert distance(run, exact(scene, run.time, -3.14), scene.can.radius) < 2e-8
+    assert largest_error(run, exact(scene, run.time, -3.14), scene.can.radius) < 2e-8
 
 
 @pytest.mark.parametrize(

@@ -22,7 +22,7 @@ from mjbeer.simulation.simulate import Run
 from mjbeer.theory.can import Damping
 from mjbeer.theory.equations import accelerations
 from mjbeer.theory.scene import relaxation_rate
-from mjbeer.theory.trajectory import distance
+from mjbeer.theory.trajectory import largest_error
 from tests.support.scenes import METAL, error, scenes
 
 pytestmark = pytest.mark.slow
@@ -184,7 +184,7 @@ def test_damped_motions_keep_to_the_tolerance(
     assume(tolerances._stiffest(scene) * times[-1] < 2e3)  # DOP853 takes steps as short as that
     run = simulate(scene, times[-1], phi0, swing * unit, tolerance=tolerance, times=times)
     truth = exact(scene, times, phi0, swing * unit)
-    assert distance(run, truth, scene.can.radius, (phi0, scene.start(phi0, 0.0)[0])) <= tolerance
+    assert largest_error(run, truth, scene.can.radius, (phi0, scene.start(phi0, 0.0)[0])) <= tolerance
     assert run.error_estimate <= tolerance
     assert run.integrator == "DOP853"
 
@@ -215,7 +215,7 @@ def test_a_damped_run_is_trusted_if_it_is_right(damping: float) -> None:
     truth = exact(scene, times, 2.0)
     for integrator, timestep, right in (("RK4", 1e-3, True), ("DOP853", 1e-3, True), ("Euler", 5e-3, False)):
         run = simulate(scene, 4, 2.0, integrator=integrator, timestep=timestep, times=times)
-        found = distance(run, truth, scene.can.radius)
+        found = largest_error(run, truth, scene.can.radius)
         assert found < 1e-6 if right else found > 1e-2
         assert run.trusted == right, run.warnings
 
@@ -226,7 +226,7 @@ def test_a_second_run_estimates_the_error_of_implicit_methods(integrator: str, r
     """Where MuJoCo's accelerations are those of a whole step, they must not be taken for a loss of the model's."""
     scene = sliding(can=METAL, damping=1e-3)
     run = simulate(scene, 1, 1.0, rolling=rolling, integrator=integrator, times=np.linspace(0, 1, 11))
-    found = distance(run, exact(scene, run.time, 1.0), scene.can.radius)
+    found = largest_error(run, exact(scene, run.time, 1.0), scene.can.radius)
     assert found < run.error_estimate < 5 * found
 
 
@@ -323,7 +323,7 @@ def test_the_distance_of_two_runs_is_that_of_their_motions(scene: Scene) -> None
     coarse = fine + 1e-3 * random.normal(size=(50, size))
     solver = tolerances.ToleranceLoop(model, scene, Dynamics(model))
     begin = to_coordinates(model, scene, start[None], np.zeros(1))
-    apart = distance(
+    apart = largest_error(
         to_coordinates(model, scene, coarse, times),
         to_coordinates(model, scene, fine, times),
         scene.can.radius,

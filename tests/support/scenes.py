@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from mjbeer import Can, Load, Scene, exact, frozen, hoop, pendulum, sliding
 from mjbeer.simulation.simulate import Run
-from mjbeer.theory.trajectory import distance
+from mjbeer.theory.trajectory import largest_error
 
 METAL = Can.sheet_metal()
 SCENES = {
@@ -41,4 +41,4 @@ def scenes(draw: st.DrawFn) -> Scene:
 def error(run: Run) -> float:
     """The largest error of phi and u/a at the samples of a run [rad], as a tolerance bounds it."""
     start = run.phi0, run.scene.start(run.phi0, run.phi_dot0)[0]
-    return distance(run, exact(run.scene, run.time, run.phi0, run.phi_dot0), run.scene.can.radius, start)
+    return largest_error(run, exact(run.scene, run.time, run.phi0, run.phi_dot0), run.scene.can.radius, start)

@@ -1,6 +1,7 @@
 """Converts between a scene's coordinates and the joints of its model, which are addressed by name."""
 
 import functools
+import math
 from collections.abc import Iterable
 from typing import Any
 
@@ -98,3 +99,27 @@ def to_coordinates(model: mujoco.MjModel, scene: Scene, states: np.ndarray, time
     roll, lift = both("roll") if "roll" in joints else u / radius, both("lift")
     rates = {"u_dot": u[1], "phi_dot": phi[1], "roll_dot": roll[1], "lift_dot": lift[1]}
     return Coordinates(time=times, u=u[0], phi=phi[0], roll=roll[0], lift=lift[0], **rates)
+
+
+def angle_sums(model: mujoco.MjModel, scene: Scene) -> np.ndarray:
+    """Return the matrix whose product with a state of a scene's model is phi and u/a [rad], shape (nq + nv, 2)."""
+    joints = joint_addresses(model)
+    sums = np.zeros((model.nq + model.nv, 2))
+    for name, place in joints.items():
+        if name == "slide":
+            sums[place, 1] = 1 / scene.can.radius
+        elif name != "lift":
+            sums[place, 0] = 1.0
+            sums[place, 1] = 0.0 if "slide" in joints else 1.0
+    return sums
+
+
+def state_sizes(model: mujoco.MjModel, scene: Scene) -> np.ndarray:
+    """Return the size of each component of a state, shape (nq + nv,): below it an error counts absolutely.
+
+    Lengths have the radius, angles 1 rad, and their rates these times sqrt(g/a).
+    """
+    radius = scene.can.radius
+    rate = math.sqrt(scene.gravity / radius) if scene.gravity > 0 else 1.0
+    sizes = np.array([radius if name in ("slide", "lift") else 1.0 for name in joint_addresses(model)])
+    return np.append(sizes, rate * sizes)

@@ -1,24 +1,22 @@
-"""The function `simulate`, the run that it returns, and the run's error by a second one."""
+"""The function `simulate`: from a scene and a setting to a run."""
 
 import math
 import os
 import warnings
-from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from mjbeer import require
-from mjbeer.exceptions import DivergenceError, LiquidWarning, ParameterError, ToleranceError, UntrustedWarning
-from mjbeer.model.joints import joint_addresses, to_coordinates
+from mjbeer.exceptions import LiquidWarning, ParameterError, ToleranceError, UntrustedWarning
+from mjbeer.model.joints import to_coordinates
 from mjbeer.model.setting import FRICTION, OWN, Integrator, Rolling, Setting
-from mjbeer.simulation.simulator import Simulator
-from mjbeer.theory.equations import Coordinates
+from mjbeer.simulation.methods import mechanics
+from mjbeer.simulation.run import Run, diagnose_run, turns_rounding
+from mjbeer.simulation.solve import solve
+from mjbeer.simulation.stepped_model import kept_model
 from mjbeer.theory.oscillator import reduced
-from mjbeer.theory.record import ERROR, Record, failed_checks, rolling_failures
 from mjbeer.theory.scene import DURATION, PHI0, Scene
-from mjbeer.theory.trajectory import Trajectory, distance
 
 _ON_A_STEP = 1e-10
 """Largest distance of a requested time from a multiple of the timestep, over the time: a running sum of a million
@@ -27,146 +25,10 @@ _MOST_SAMPLES = 1e8
 """Largest number of samples at every timestep: they take ten gigabytes."""
 _MOST_STEPS = 1e12
 """Largest number of steps: at half a microsecond each they take a week."""
-_OVER_DISTANCE = 3.2
-"""Error estimate over the distance to an uneven run. A contact is 0.62 times as soft in that run, so that its distance
-is 1/2.6 of the error; 3.2 allows for an order that has not settled."""
-_START_OFFSET = 4e-14
-"""Distance between the starts of a run and of the uneven one [rad]: a hundred times their rounding, which shows how
-much that matters beside a separatrix. A larger one could move the motion against an error, and hide it."""
-_DEPTH = 0.5
-"""Depth at which a can in contact starts in the uneven run, over that in the run. The error of softness falls to 0.62
-or to 0.38 of itself; that of the depth falls to half, between them, as the two may be of opposite sign."""
-_COMPARED, _PARTS = 4096, 32
-"""Number of timesteps, evenly spread over a run, at which the uneven run is compared with it besides the samples; and
-of the parts of a run to a tolerance, in each of which its runs are compared at least once."""
-_MAX_TURN_PER_STEP = 2.0
-"""Largest angle that the load may turn in a timestep [rad], unless its motion hardly depends on the angle: J looks the
-same at every step of pi, but not to the stages of DOP853."""
-
-
-@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
-class Run(Trajectory):
-    """A simulated motion and its setting.
-
-    What it says about itself rests on all of its steps, and does not depend on the samples that were asked for.
-    """
-
-    setting: Setting
-    """How the can was made to roll and how it was stepped."""
-    record: Record
-    """The extremes of the motion over all its steps, on which its warnings rest."""
-    chosen: str
-    """The name of the integrator; with a tolerance it is "GaussJackson" or "DOP853"."""
-    error: float | None
-    """The error that was estimated on the way to a tolerance [rad]; None without one."""
-    checkpoints: Coordinates
-    """The motion as it was stepped, from `phi0` less its whole turns, at the samples and at times that are spread over
-    the whole run, where a second run is compared."""
-
-    def __post_init__(self) -> None:
-        """Check nothing: the start is checked before a run, and its samples are finite after it."""
-
-    @property
-    def rolling(self) -> str:
-        """Return "reduced", "equality" or "contact"."""
-        return self.setting.rolling
-
-    @property
-    def integrator(self) -> str:
-        """Return the name of the integrator."""
-        return self.chosen
-
-    @property
-    def timestep(self) -> float | None:
-        """Return the fixed timestep of the integrator [s]; None with a tolerance."""
-        return self.setting.timestep if self.setting.tolerance is None else None
-
-    def rolls_until(self, friction: float = np.inf) -> float:
-        """Return the time [s] until which rolling without slipping was possible with a coefficient of `friction`.
-
-        It is infinite if rolling was possible to the end. With infinite friction only N > 0 has to hold; any other
-        takes a run as long as this one.
-        """
-        friction = require.non_negative("friction", friction, finite=False)
-        if friction == self.record.friction:
-            return self.record.rolling_ends_at
-        simulator = Simulator(self.scene, self.setting)
-        start = simulator.initial_state(reduced(self.phi0), self.phi_dot0)
-        record = simulator.solve(start, self.checkpoints.time, friction).record
-        assert record is not None
-        return record.rolling_ends_at
-
-    @cached_property
-    def error_estimate(self) -> float:
-        """Return the estimated global error of phi and u/a [rad], relative to the angle where that exceeds 1 rad.
-
-        It rests on the largest distance from a second run. Without a tolerance the first access makes that run, which
-        takes up to three times as long as this one; the error is infinite if it diverges. In a contact the slip and the
-        depth of the can, both in radii, are added: a can that has slid is elsewhere by as much, and one that has sunk
-        in rolls on a smaller radius. A start beyond half a turn adds the rounding of its whole turns.
-        """
-        error = compare_uneven(self) if self.error is None else self.error
-        if self.rolling == "contact":
-            error += (self.record.slip + self.record.lift) / self.scene.can.radius
-        return error + _turns_rounding(self.phi0)
-
-    @property
-    def trusted(self) -> bool:
-        """Return whether there are no warnings; with a fixed timestep this needs `error_estimate`'s run."""
-        return not self.warnings
-
-    @cached_property
-    def failed_checks(self) -> tuple[str, ...]:
-        """Return those reasons to doubt that the equations were solved that take no second run."""
-        found = failed_checks(self.record, self.rolling)
-        turn = self.record.largest_rate * (timestep := self.timestep or 0.0)
-        if turn > _MAX_TURN_PER_STEP and self.integrator != "DOP853":
-            # Damping slows the load, and the slower it is, the less even it turns: down to the rate that is no trouble.
-            rate = min(abs(self.phi_dot0), _MAX_TURN_PER_STEP / timestep) if self.scene.dissipates else self.phi_dot0
-            if self.scene.oscillator.unevenness(self.phi0, rate) > ERROR:
-                found.append(
-                    f"the load turns by {turn:.3g} rad in a timestep (trusted up to {_MAX_TURN_PER_STEP:g}), in which "
-                    "its weight and inertia change unseen"
-                )
-        return tuple(found)
-
-    @cached_property
-    def rolling_warnings(self) -> tuple[str, ...]:
-        """Return where the can did not, or could not, roll without slipping, one sentence for each."""
-        return tuple(rolling_failures(self.record, self.rolling, self.setting.friction))
-
-    @cached_property
-    def solver_warnings(self) -> tuple[str, ...]:
-        """Return the reasons to doubt that the equations of the model were solved, one sentence for each."""
-        if (error := self.error_estimate) <= ERROR:
-            return self.failed_checks
-        finer = "other timesteps" if self.timestep is not None else "a tighter tolerance"
-        if math.isfinite(error):
-            found = f"phi and u/a are off by {error:.3g} rad (trusted up to {ERROR:g}), as a run at {finer} shows"
-        else:
-            found = f"a run at {finer} diverges: take a much smaller timestep or a better integrator"
-        return (*self.failed_checks, found)
-
-
-def compare_uneven(run: Run) -> float:
-    """Return the error of phi and u/a [rad] that an uneven run shows, relative beyond 1 rad; infinite if that diverges.
-
-    Constraints that are tuned to the timestep are harder in it, so that its distance from the first run includes the
-    effect of their softness. It begins a little aside, which adds that of rounding, and of a contact's depth.
-    """
-    scene, setting, motion = run.scene, run.setting, run.checkpoints
-    phi0 = reduced(run.phi0)
-    simulator = Simulator(scene, setting, uneven=True)
-    start = simulator.initial_state(phi0 + _START_OFFSET, run.phi_dot0)
-    if setting.rolling == "contact":
-        start[joint_addresses(simulator.model)["lift"]] *= _DEPTH
-    try:
-        states = simulator.solve(start, motion.time).states
-    except DivergenceError:
-        return math.inf
-    begin = phi0, scene.start(phi0, run.phi_dot0)[0]
-    uneven = to_coordinates(simulator.model, scene, states, motion.time)
-    return _OVER_DISTANCE * distance(motion, uneven, scene.can.radius, begin)
+_COMPARED = 4096
+"""Number of timesteps, evenly spread over a run, at which a second run is compared with it besides the samples."""
+_PARTS = 32
+"""Number of parts of a run to a tolerance, in each of which its runs are compared at least once."""
 
 
 def simulate(
@@ -221,10 +83,11 @@ def simulate(
     else:
         sample_times = _sample_times(duration, setting, require.times("times", times, increasing=True))
     run = integrate(scene, phi0=phi0, phi_dot0=phi_dot0, setting=setting, times=sample_times)
-    if found := (*run.failed_checks, *run.rolling_warnings):
-        warnings.warn("this run is not to be relied on: " + "; ".join(found), UntrustedWarning, stacklevel=2)
-    for about in run.liquid_warnings:
-        warnings.warn(about, LiquidWarning, stacklevel=2)
+    reasons = (*run.diagnosis.solver, *run.diagnosis.rolling)
+    if reasons:
+        warnings.warn("this run is not to be relied on: " + "; ".join(reasons), UntrustedWarning, stacklevel=2)
+    for reason in run.diagnosis.liquid:
+        warnings.warn(reason, LiquidWarning, stacklevel=2)
     return run
 
 
@@ -264,34 +127,20 @@ def _sample_times(duration: float | None, setting: Setting, times: np.ndarray) -
 
 
 def integrate(scene: Scene, phi0: float, phi_dot0: float, setting: Setting, times: np.ndarray) -> Run:
-    """Return the motion of a scene in a setting at increasing `times` [s], with the same errors as `simulate`."""
-    along, samples, checkpoints = times, slice(None), None
-    if setting.tolerance is None:
-        last = max(1, int(times[-1] / setting.timestep))
-        checkpoints = setting.timestep * np.linspace(0, last, min(last, _COMPARED) + 1).astype(np.int64)
-    elif (times[1:] - times[:-1]).max(initial=times[0]) > times[-1] / _PARTS:
-        checkpoints = times[-1] * np.linspace(0, 1, _PARTS + 1)
-    if checkpoints is not None:
-        along = np.sort(np.concatenate([times, checkpoints[checkpoints <= times[-1]]]))
-        along = along[np.diff(along, prepend=-1.0) > 0]  # unlike union1d it does not import masked arrays
-        samples = np.searchsorted(along, times)
+    """Return the motion of a scene in a setting at increasing `times` [s], with the same errors as `simulate`.
+
+    The model starts less whole turns away from phi = 0, where its angles keep their digits; the samples have them again.
+    """
     near_phi0 = reduced(phi0)
-    rounding = _turns_rounding(phi0)
-    stepped = setting
-    if setting.tolerance is not None and rounding > 0:
-        if setting.tolerance <= rounding:
-            raise ToleranceError(
-                f"tolerance {setting.tolerance:g} rad is not reached: doubles near phi0 = {phi0!r} rad have errors of "
-                f"up to {rounding:.2g} rad; start less whole turns away"
-            )
-        stepped = replace(setting, tolerance=setting.tolerance - rounding)
-    simulator = Simulator.kept(scene, stepped)
-    solution = simulator.solve(simulator.initial_state(near_phi0, phi_dot0), along, friction=math.inf)
-    motion = to_coordinates(simulator.model, scene, solution.states, along)
-    assert solution.record is not None
+    checked = _check_times(setting, times)
+    stepped = kept_model(mechanics(scene, setting))
+    start = stepped.initial_state(near_phi0, phi_dot0)
+    solution = solve(stepped, setting, start, checked, math.inf, turns_rounding(phi0))
+    motion = to_coordinates(stepped.model, scene, solution.states, checked)
+    samples = np.searchsorted(checked, times)
     arrays = {name: array[samples] for name, array in vars(motion).items()}
-    if rounding > 0:
-        turns = phi0 - near_phi0
+    turns = phi0 - near_phi0
+    if turns != 0:
         arrays["phi"] += turns
         if scene.attachment == "frozen":  # u = a phi, and the can turns with its load
             arrays["u"] += scene.can.radius * turns
@@ -303,16 +152,25 @@ def integrate(scene: Scene, phi0: float, phi_dot0: float, setting: Setting, time
         phi_dot0=phi_dot0,
         setting=setting,
         record=solution.record,
-        chosen=solution.integrator,
+        diagnosis=diagnose_run(solution.record, setting, solution.method, near_phi0, phi_dot0),
+        method=solution.method,
         error=solution.error,
         checkpoints=motion,
     )
 
 
-def _turns_rounding(phi0: float) -> float:
-    """Return the rounding of phi and u/a [rad] by the whole turns of a start at `phi0` [rad]; 0 up to half a turn.
+def _check_times(setting: Setting, times: np.ndarray) -> np.ndarray:
+    """Return increasing times [s] at which a run is compared with another one: its samples, and more in between.
 
-    Four steps of a calculation round to a double of that size: the difference of the turns, their product with the
-    radius, and either sum.
+    With a fixed timestep they are up to `_COMPARED` steps; with a tolerance, `_PARTS` times if samples are few.
     """
-    return 4 * float(np.spacing(abs(phi0))) if abs(phi0) > math.pi else 0.0
+    last = times[-1]
+    if setting.tolerance is None:
+        steps = max(1, int(last / setting.timestep))
+        more = setting.timestep * np.linspace(0, steps, min(steps, _COMPARED) + 1).astype(np.int64)
+    elif (times[1:] - times[:-1]).max(initial=times[0]) > last / _PARTS:
+        more = last * np.linspace(0, 1, _PARTS + 1)
+    else:
+        return times
+    both = np.sort(np.concatenate([times, more[more <= last]]))
+    return both[np.diff(both, prepend=-1.0) > 0]  # unlike union1d this does not import masked arrays

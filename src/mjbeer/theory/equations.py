@@ -1,14 +1,18 @@
-"""The equations of motion of a can that rolls without slipping: accelerations, forces and energy.
+"""The equations of motion of a scene: its accelerations, the forces of the incline, and its energy along a motion.
 
 The accelerations are those of eqs. (46) and (47), with damping and drag added. The normal force N and the friction
-force F of the incline follow from them. N < 0 means that it would have to pull, |F| > mu N that the can would slip.
+force F of the incline follow from them. If N < 0 the incline would have to pull at the can, and if |F| > mu N the can
+would slip. The formulas themselves are in `formulas`.
 """
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
+from mjbeer.theory import formulas
+from mjbeer.theory.formulas import SceneNumbers
 from mjbeer.theory.scene import Scene
 
 
@@ -57,6 +61,30 @@ class Forces:
         return np.divide(np.abs(self.friction), self.normal, out=ratio, where=self.normal > 0)
 
 
+def scene_numbers(scene: Scene) -> SceneNumbers:
+    """Return the numbers of a scene that the formulas need."""
+    swing = scene.oscillator
+    return SceneNumbers(
+        base=swing.base,
+        chord=swing.chord,
+        coupling=swing.coupling,
+        ramp=swing.ramp,
+        depth=swing.depth,
+        bottom=swing.bottom,
+        frozen=scene.attachment == "frozen",
+        radius=scene.can.radius,
+        can_mass=scene.can.mass,
+        can_inertia=scene.can.inertia,
+        load_mass=scene.load.mass,
+        load_inertia=scene.load.inertia,
+        offset=scene.load.offset,
+        total_mass=scene.mass,
+        effective_mass=scene.effective_mass,
+        along=scene.gravity * math.sin(scene.incline),
+        across=scene.gravity * math.cos(scene.incline),
+    )
+
+
 def accelerations(
     scene: Scene,
     phi: np.ndarray | float,
@@ -72,32 +100,49 @@ def accelerations(
     if scene.attachment == "frozen":
         phi_ddot = scene.oscillator.acceleration(phi, phi_dot)
         return scene.can.radius * phi_ddot, phi_ddot
-    mass, lever, along, torque = scene.effective_mass, scene.load.moment * np.cos(phi), scene.downhill_weight, 0.0
+    torque = 0.0
+    braking = 0.0
     if scene.dissipates:
-        # Torque T and drag D act beside the forces of eqs. (46) and (47). Without u_ddot, which eq. (46) gives, they
-        # turn phi by T - (m b cos(phi) / M) (T / a + D), against the inertia J(phi).
-        torque = scene.damping_law.torque(slip_rate(scene, phi_dot, u_dot) if slip is None else slip)
-        braking = torque / scene.can.radius + scene.drag * u_dot * np.abs(u_dot)
-        along, torque = along - braking, torque - lever / mass * braking
+        # The damping's torque T and the drag D act beside the forces of eqs. (46) and (47). With u_ddot eliminated by
+        # eq. (46) they turn phi by T - (m b cos(phi) / M_e) (T / a + D).
+        rate = slip_rate(scene, phi_dot, u_dot) if slip is None else slip
+        damping = scene.damping_law.torque(rate)
+        braking = damping / scene.can.radius + scene.drag * u_dot * np.abs(u_dot)
+        torque = damping - scene.load.moment * np.cos(phi) / scene.effective_mass * braking
     phi_ddot = scene.oscillator.acceleration(phi, phi_dot, torque)
-    return (along + lever * phi_ddot - scene.load.moment * np.sin(phi) * phi_dot**2) / mass, phi_ddot  # eq. (46)
+    return formulas.axis_acceleration(scene_numbers(scene), phi, phi_dot, phi_ddot, braking), phi_ddot
+
+
+class InitialState(NamedTuple):
+    """The state in which a motion begins."""
+
+    phi: float
+    """[rad]"""
+    phi_dot: float
+    """[rad/s]"""
+    u: float
+    """[m]"""
+    u_dot: float
+    """[m/s]"""
 
 
 def axis_motion(
-    scene: Scene, time: np.ndarray, phi: np.ndarray, phi_dot: np.ndarray, start: tuple[float, ...]
+    scene: Scene, time: np.ndarray, phi: np.ndarray, phi_dot: np.ndarray, start: InitialState
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return u [m] and u_dot [m/s] of rolling without damping and drag, from phi at times [s] since the `start`.
 
-    The start is phi, phi_dot, u and u_dot. A frozen load has u = a phi, eq. (50). With a sliding load
-    M_e u_dot - m b cos(phi) phi_dot - (m + m_can) g sin(alpha) t is conserved, the integral of eq. (46).
+    A frozen load has u = a phi, eq. (50). With a sliding load M_e u_dot - m b cos(phi) phi_dot - (m + m_can) g
+    sin(alpha) t is conserved, the integral of eq. (46).
     """
     if scene.attachment == "frozen":
         return scene.can.radius * phi, scene.can.radius * phi_dot
-    phi0, phi_dot0, u0, u_dot0 = start
-    arm, steady = scene.load.moment / scene.effective_mass, scene.downhill_weight / scene.effective_mass
-    mean_u, mean_u_dot = u0 - arm * math.sin(phi0), u_dot0 - arm * math.cos(phi0) * phi_dot0
+    arm = scene.load.moment / scene.effective_mass
+    steady = scene.downhill_weight / scene.effective_mass
+    mean_u = start.u - arm * math.sin(start.phi)
+    mean_u_dot = start.u_dot - arm * math.cos(start.phi) * start.phi_dot
     u = arm * np.sin(phi) + (mean_u + mean_u_dot * time + steady * time**2 / 2)
-    return u, arm * np.cos(phi) * phi_dot + (mean_u_dot + steady * time)
+    u_dot = arm * np.cos(phi) * phi_dot + (mean_u_dot + steady * time)
+    return u, u_dot
 
 
 def slip_rate(scene: Scene, phi_dot: np.ndarray | float, u_dot: np.ndarray | float) -> np.ndarray | float:
@@ -109,31 +154,22 @@ def rolling_forces(
     scene: Scene, phi: np.ndarray | float, phi_dot: np.ndarray | float, u_dot: np.ndarray | float
 ) -> Forces:
     """Return N and F [N] that rolling without slipping needs in a state, as `accelerations` takes it."""
-    sin, cos, square, moment = np.sin(phi), np.cos(phi), phi_dot**2, scene.load.moment
+    numbers = scene_numbers(scene)
     u_ddot, phi_ddot = accelerations(scene, phi, phi_dot, u_dot)
-    normal = scene.mass * scene.gravity * math.cos(scene.incline) + moment * (sin * phi_ddot + cos * square)
+    normal = formulas.normal_force(numbers, phi, phi_dot, phi_ddot)
     if scene.attachment == "frozen":
-        return Forces(normal, scene.downhill_weight - (scene.mass * u_ddot - moment * (cos * phi_ddot - sin * square)))
-    damping = scene.damping_law.torque(slip_rate(scene, phi_dot, u_dot)) / scene.can.radius
-    return Forces(normal, scene.can.inertia / scene.can.radius**2 * u_ddot + damping)  # both turn the can
+        return Forces(normal, formulas.friction_of_frozen(numbers, phi, phi_dot, phi_ddot))
+    damping = scene.damping_law.torque(slip_rate(scene, phi_dot, u_dot))
+    return Forces(normal, formulas.friction_of_sliding(numbers, u_ddot, damping))
 
 
 def potential_energy(scene: Scene, motion: Coordinates) -> np.ndarray:
     """Return the potential energy [J] of can and load at each sample, 0 with all mass at u = 0 on the axis."""
-    return -scene.gravity * (
-        scene.mass * (motion.u * math.sin(scene.incline) - motion.lift * math.cos(scene.incline))
-        + scene.load.moment * np.cos(scene.incline + motion.phi)
-    )
+    return formulas.potential_energy(scene_numbers(scene), motion.phi, motion.u, motion.lift)
 
 
 def kinetic_energy(scene: Scene, motion: Coordinates) -> np.ndarray:
     """Return the kinetic energy [J] of can and load at each sample: eqs. (39) and (44), with slip and lift added."""
-    can, load = scene.can, scene.load
-    along = motion.u_dot - load.offset * np.cos(motion.phi) * motion.phi_dot
-    across = motion.lift_dot + load.offset * np.sin(motion.phi) * motion.phi_dot
-    return (
-        can.mass * (motion.u_dot**2 + motion.lift_dot**2)
-        + can.inertia * motion.roll_dot**2
-        + load.mass * (along**2 + across**2)
-        + load.inertia * motion.phi_dot**2
-    ) / 2
+    return formulas.kinetic_energy(
+        scene_numbers(scene), motion.phi, motion.phi_dot, motion.u_dot, motion.roll_dot, motion.lift_dot
+    )

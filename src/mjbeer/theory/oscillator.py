@@ -19,6 +19,7 @@ from functools import cached_property
 import numpy as np
 
 from mjbeer.exceptions import NoEquilibriumError
+from mjbeer.theory import formulas
 from mjbeer.theory.can import Can, Load
 
 _SINC_SERIES = np.array([1 / math.factorial(k) for k in range(19, 2, -2)])
@@ -122,17 +123,15 @@ class Oscillator:
 
     def inertia(self, phi: np.ndarray | float) -> np.ndarray:
         """Return J [kg m^2] at `phi` [rad]."""
-        return self.base + self.chord * np.sin(phi / 2) ** 2 + self.coupling * np.sin(phi) ** 2
+        return formulas.inertia(self, phi)
 
     def kinetic_energy(self, phi: np.ndarray | float, phi_dot: np.ndarray | float) -> np.ndarray:
         """Return J phi_dot^2 / 2 [J], the kinetic energy of the swing."""
-        return self.inertia(phi) * np.square(phi_dot) / 2
+        return formulas.swing_energy(self, phi, phi_dot)
 
     def drop(self, phi: np.ndarray | float, start: np.ndarray | float) -> np.ndarray:
         """Return V(start) - V(phi) [J] without the cancellation of the plain difference."""
-        delta_phi = phi - start
-        middle = (phi + start) / 2 - self.bottom
-        return self.ramp * delta_phi - 2 * self.depth * np.sin(middle) * np.sin(delta_phi / 2)
+        return formulas.potential_drop(self, phi, start)
 
     def unevenness(self, phi0: float, phi_dot0: float) -> float:
         """Return by how much phi_dot varies over a turn, relative to itself, for a start [rad, rad/s] that rotates."""
@@ -147,9 +146,7 @@ class Oscillator:
 
         A `torque` [N m] acts beside those of inertia and weight.
         """
-        d_inertia = self.chord / 2 * np.sin(phi) + self.coupling * np.sin(2 * phi)
-        weight = self.ramp - self.depth * np.sin(phi - self.bottom)
-        return (weight + torque - d_inertia * phi_dot**2 / 2) / self.inertia(phi)
+        return formulas.phi_acceleration(self, phi, phi_dot, torque)
 
     def equilibrium(self) -> float:
         """Return the angle of stable equilibrium [rad], where |ramp| <= depth: eq. (53) for a frozen load."""

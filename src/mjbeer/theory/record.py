@@ -1,12 +1,14 @@
-"""The extremes of a motion over all its steps, and the reasons not to trust it that follow from them."""
+"""The extremes of a motion over all its steps, and the reasons not to trust the motion that follow from them."""
 
 import math
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from mjbeer.theory import equations
-from mjbeer.theory.equations import Coordinates, select_samples, slip_rate
-from mjbeer.theory.liquid import centrifugal_ratio
+from mjbeer.theory.equations import Coordinates, InitialState, select_samples
+from mjbeer.theory.liquid import centrifugal_ratio, lump_warning
 from mjbeer.theory.scene import Scene
 
 # The largest values that are trusted.
@@ -16,105 +18,66 @@ LIFT = 1e-3  # gap or penetration between can and incline, in radii
 _SMALL_SWING = 1e-2  # of the depth m g b of the well: a drift is compared with no less than a swing of 0.14 rad
 
 
+@dataclass
 class Record:
-    """The largest slip, lift, drift and rate of a motion so far, which is added in pieces, in the order of time."""
+    """The extremes of a motion, over all of its steps."""
 
-    def __init__(self, scene: Scene, friction: float = math.inf) -> None:
-        """Begin the record of a can that slips where rolling needs more than a coefficient of `friction`."""
-        self.scene, self.friction = scene, friction
-        self.slip = 0.0  # largest distance that the can has slid instead of rolled [m]
-        self.lift = 0.0  # largest distance between can and incline, or depth of the can in it [m]
-        self.largest_turn = 0.0  # largest angle by which the load has turned from its start [rad]
-        self.largest_distance = 0.0  # largest distance of the axis from its start [m]
-        self.angle_covered = 0.0  # angle that the load has covered, forth and back [rad]
-        self.largest_rate = 0.0  # largest rate of the load, |phi_dot| [rad/s]
-        self.swing_energy = 0.0  # largest kinetic energy of the swing, J phi_dot^2 / 2 [J]
-        self.axis_drift = 0.0  # largest distance of the axis from where its momentum has it [m]; 0 with damping or drag
-        self.largest_slip_rate = 0.0  # largest |u_dot/a - phi_dot| of can and load with damping or drag [rad/s]
-        self.no_lump_at = math.inf  # when the wall of a can with a liquid is first too fast for a lump [s]
-        self.lowest_normal = math.inf  # smallest N that rolling needed [N]; below 0 the incline would have to pull
-        self.needed_friction = 0.0  # largest friction coefficient that rolling needed; infinite where N < 0
-        self.rolling_ends_at = math.inf  # when N < 0 or |F| > friction N for the first time, interpolated [s]
-        self._kinetic = self._energy = self._energy_change = 0.0
-        self._swing_drift = self._largest_swing_drift = self._swing_change = 0.0
-        self._first: Coordinates | None = None
-        self._last: Coordinates | None = None
-        self._before: tuple[float, float] | None = None
+    scene: Scene
+    friction: float = math.inf
+    """Coefficient of friction with which `rolling_ends_at` was looked for."""
+    slip: float = 0.0
+    """Largest distance that the can has slid instead of rolled [m]."""
+    lift: float = 0.0
+    """Largest distance between can and incline, or depth of the can in it [m]."""
+    largest_turn: float = 0.0
+    """Largest angle by which the load has turned from its start [rad]."""
+    largest_distance: float = 0.0
+    """Largest distance of the axis from its start [m]."""
+    angle_covered: float = 0.0
+    """Angle that the load has covered, forth and back [rad]."""
+    largest_rate: float = 0.0
+    """Largest rate of the load, |phi_dot| [rad/s]."""
+    swing_energy: float = 0.0
+    """Largest kinetic energy of the swing, J phi_dot^2 / 2 [J]."""
+    kinetic_energy: float = 0.0
+    """Largest kinetic energy of all that moves [J]."""
+    energy_change: float = 0.0
+    """Largest change of the total energy [J]; damping and drag change it, too."""
+    swing_change: float = 0.0
+    """Largest change of the swing's energy J phi_dot^2 / 2 + V [J]; 0 with damping or drag."""
+    swing_drift: float = 0.0
+    """Largest integral of that change over the angle covered [J rad]; 0 with damping or drag."""
+    axis_drift: float = 0.0
+    """Largest distance of the axis from where its momentum has it [m]; 0 with damping or drag."""
+    largest_slip_rate: float = 0.0
+    """Largest |u_dot/a - phi_dot| of can and load with damping or drag [rad/s]."""
+    no_lump_at: float = math.inf
+    """When the wall of a can with a liquid is first too fast for a lump [s]."""
+    lowest_normal: float = math.inf
+    """Smallest N that rolling needed [N]; below 0 the incline would have to pull."""
+    needed_friction: float = 0.0
+    """Largest friction coefficient that rolling needed; infinite where N < 0."""
+    rolling_ends_at: float = math.inf
+    """When N < 0 or |F| > friction N for the first time, interpolated [s]."""
 
     @classmethod
     def of(cls, motion: Coordinates, scene: Scene, friction: float = math.inf) -> "Record":
         """Return the record of a motion whose samples are all there is."""
-        record = cls(scene, friction)
-        record.add(motion)
-        return record
-
-    def add(self, motion: Coordinates) -> None:
-        """Add the next piece of the motion, which begins after the last one ended."""
-        self.add_conserved(motion)
-        self.add_forces(motion.time, motion.phi, motion.phi_dot, motion.u_dot)
-
-    def add_conserved(self, motion: Coordinates) -> None:
-        """Add the next piece of the motion to everything but what rests on forces."""
-        scene, oscillator = self.scene, self.scene.oscillator
-        kinetic = equations.kinetic_energy(scene, motion)
-        energy = kinetic + equations.potential_energy(scene, motion)
-        if self._first is None or self._last is None:
-            self._first = self._last = select_samples(motion, [0])
-            self._energy = float(energy[0])
-        first, last, self._last = self._first, self._last, select_samples(motion, [-1])
-        self.slip = _largest(self.slip, motion.u - first.u - scene.can.radius * (motion.roll - first.roll))
-        self.lift = _largest(self.lift, motion.lift)
-        self.largest_turn = _largest(self.largest_turn, motion.phi - first.phi)
-        self.largest_distance = _largest(self.largest_distance, motion.u - first.u)
-        self.largest_rate = _largest(self.largest_rate, motion.phi_dot)
-        covered = np.abs(np.diff(motion.phi, prepend=last.phi))
-        in_swing = oscillator.kinetic_energy(motion.phi, motion.phi_dot)
-        self.angle_covered += float(covered.sum())
-        self._kinetic, self.swing_energy = _largest(self._kinetic, kinetic), _largest(self.swing_energy, in_swing)
-        self._energy_change = _largest(self._energy_change, energy - self._energy)
-        if scene.dissipates:
-            self.largest_slip_rate = _largest(self.largest_slip_rate, slip_rate(scene, motion.phi_dot, motion.u_dot))
-            if scene.damping_law.holds is not None:
-                fast = np.flatnonzero(centrifugal_ratio(scene, motion.u_dot) > 1)
-                self.no_lump_at = min(self.no_lump_at, *motion.time[fast[:1]].tolist(), math.inf)
-            return
-        begun = oscillator.kinetic_energy(first.phi, first.phi_dot)
-        excess = in_swing - (begun + oscillator.drop(motion.phi, first.phi))
-        self._swing_change = _largest(self._swing_change, excess)
-        drift = self._swing_drift + np.cumsum(excess * covered)
-        self._swing_drift, self._largest_swing_drift = float(drift[-1]), _largest(self._largest_swing_drift, drift)
-        if scene.attachment == "sliding":  # a frozen load conserves no momentum
-            begin = tuple(float(each[0]) for each in (first.phi, first.phi_dot, first.u, first.u_dot))
-            expected, _ = equations.axis_motion(scene, motion.time - first.time, motion.phi, motion.phi_dot, begin)
-            self.axis_drift = _largest(self.axis_drift, motion.u - expected)
-
-    def add_forces(self, time: np.ndarray, phi: np.ndarray, phi_dot: np.ndarray, u_dot: np.ndarray | float) -> None:
-        """Add the forces that rolling needs at times [s] in the states there; `u_dot` matters to damping and drag."""
-        forces = equations.rolling_forces(self.scene, phi, phi_dot, u_dot)
-        self.lowest_normal = float(np.minimum(self.lowest_normal, forces.normal.min()))
-        self.needed_friction = _largest(self.needed_friction, forces.needed_friction)
-        if math.isfinite(self.rolling_ends_at):
-            return
-        margin = forces.normal
-        if math.isfinite(self.friction):
-            margin = np.minimum(margin, self.friction * forces.normal - np.abs(forces.friction))
-        if margin.min() < 0:
-            after = int(np.argmax(margin < 0))
-            later, below = float(time[after]), float(margin[after])
-            before = (float(time[after - 1]), float(margin[after - 1])) if after else self._before
-            earlier, above = before or (later, 0.0)
-            self.rolling_ends_at = earlier + above / (above - below) * (later - earlier)
-        self._before = float(time[-1]), float(margin[-1])
+        maker = RecordMaker(scene, friction)
+        maker.add(motion)
+        return maker.record
 
     @property
     def energy_drift(self) -> float:
-        """Return the largest change of the total energy over the largest kinetic energy of the swing, J phi_dot^2 / 2.
+        """Return the largest change of the total energy divided by the largest kinetic energy of the swing.
 
-        It includes what damping and drag take. A balanced load's is over the largest kinetic energy of all that moves.
+        It includes what damping and drag take. For a balanced load it is divided by the largest kinetic energy of all
+        that moves.
         """
         balanced = self.scene.load.offset == 0
         # A thousandth of 1e-11 of the kinetic energy is still many times its rounding.
-        return self._energy_change / max(self._least_swing, (1.0 if balanced else 1e-11) * self._kinetic)
+        share = 1.0 if balanced else 1e-11
+        return self.energy_change / max(self._least_swing, share * self.kinetic_energy)
 
     @property
     def swing_error(self) -> float:
@@ -122,15 +85,15 @@ class Record:
 
         A relative error of the energy is about that of the angle covered meanwhile. With damping or drag there is none.
         """
-        return self._largest_swing_drift / self._least_swing / max(1.0, self.largest_turn)
+        return self.swing_drift / self._least_swing / max(1.0, self.largest_turn)
 
     @property
     def swing_error_at_most(self) -> float:
-        """Return `swing_error` as it would be if the largest drift had been there all the time.
+        """Return `swing_error` as it would be if the largest change had been there all the time.
 
-        A step that misses a brief event may bring a drift that the next one takes away, and leave the phase wrong.
+        A step that misses a brief event may bring a change that the next one takes away, and leave the phase wrong.
         """
-        return self._swing_change / self._least_swing * self.angle_covered / max(1.0, self.largest_turn)
+        return self.swing_change / self._least_swing * self.angle_covered / max(1.0, self.largest_turn)
 
     @property
     def axis_error(self) -> float:
@@ -140,6 +103,135 @@ class Record:
     @property
     def _least_swing(self) -> float:
         return max(self.swing_energy, _SMALL_SWING * self.scene.oscillator.depth, np.finfo(float).tiny)
+
+
+class RecordMaker:
+    """Makes the record of a motion that is added in pieces, in the order of time."""
+
+    def __init__(self, scene: Scene, friction: float = math.inf) -> None:
+        """Begin the record of a can that slips where rolling needs more than a coefficient of `friction`."""
+        self.record = Record(scene, friction)
+        self._scene = scene
+        self._first: Coordinates | None = None
+        self._last_phi = math.nan
+        self._initial_energy = math.nan
+        self._swing_drift = 0.0
+        self._last_margin = Margin(math.nan, math.nan)
+
+    def add(self, motion: Coordinates) -> None:
+        """Add the next piece of the motion, which begins after the last one ended."""
+        self.add_states(motion)
+        self.add_forces(motion.time, motion.phi, motion.phi_dot, motion.u_dot)
+
+    def add_states(self, motion: Coordinates) -> None:
+        """Add the next piece of the motion to everything except what rests on forces."""
+        record = self.record
+        kinetic = equations.kinetic_energy(self._scene, motion)
+        energy = kinetic + equations.potential_energy(self._scene, motion)
+        if self._first is None:
+            self._first = select_samples(motion, [0])
+            self._last_phi = float(motion.phi[0])
+            self._initial_energy = float(energy[0])
+        first = self._first
+        rolled = self._scene.can.radius * (motion.roll - first.roll)
+        swing = self._scene.oscillator.kinetic_energy(motion.phi, motion.phi_dot)
+        covered = np.abs(np.diff(motion.phi, prepend=self._last_phi))
+        self._last_phi = float(motion.phi[-1])
+        record.slip = _largest(record.slip, motion.u - first.u - rolled)
+        record.lift = _largest(record.lift, motion.lift)
+        record.largest_turn = _largest(record.largest_turn, motion.phi - first.phi)
+        record.largest_distance = _largest(record.largest_distance, motion.u - first.u)
+        record.largest_rate = _largest(record.largest_rate, motion.phi_dot)
+        record.angle_covered += float(covered.sum())
+        record.kinetic_energy = _largest(record.kinetic_energy, kinetic)
+        record.swing_energy = _largest(record.swing_energy, swing)
+        record.energy_change = _largest(record.energy_change, energy - self._initial_energy)
+        if self._scene.dissipates:
+            self._add_slip(motion)
+        else:
+            self._add_conserved(motion, swing, covered)
+
+    def _add_slip(self, motion: Coordinates) -> None:
+        """Add how can and load slip past each other with damping or drag."""
+        record = self.record
+        slip_rate = equations.slip_rate(self._scene, motion.phi_dot, motion.u_dot)
+        record.largest_slip_rate = _largest(record.largest_slip_rate, slip_rate)
+        if self._scene.damping_law.holds is not None and record.no_lump_at == math.inf:
+            spread = centrifugal_ratio(self._scene, motion.u_dot) > 1
+            if spread.any():
+                record.no_lump_at = float(motion.time[spread.argmax()])
+
+    def _add_conserved(self, motion: Coordinates, swing: np.ndarray, covered: np.ndarray) -> None:
+        """Add how the swing's energy and, of a sliding load, the momentum change that should be conserved."""
+        record = self.record
+        first = self._first
+        assert first is not None
+        oscillator = self._scene.oscillator
+        initial_swing = oscillator.kinetic_energy(first.phi, first.phi_dot)
+        change = swing - (initial_swing + oscillator.drop(motion.phi, first.phi))
+        drift = self._swing_drift + np.cumsum(change * covered)
+        self._swing_drift = float(drift[-1])
+        record.swing_change = _largest(record.swing_change, change)
+        record.swing_drift = _largest(record.swing_drift, drift)
+        if self._scene.attachment == "sliding":
+            start = InitialState(
+                float(first.phi[0]), float(first.phi_dot[0]), float(first.u[0]), float(first.u_dot[0])
+            )
+            since_start = motion.time - first.time
+            expected_u, _ = equations.axis_motion(self._scene, since_start, motion.phi, motion.phi_dot, start)
+            record.axis_drift = _largest(record.axis_drift, motion.u - expected_u)
+
+    def add_forces(self, time: np.ndarray, phi: np.ndarray, phi_dot: np.ndarray, u_dot: np.ndarray) -> None:
+        """Add the forces that rolling needs at times [s] in the states there; `u_dot` matters to damping and drag."""
+        record = self.record
+        forces = equations.rolling_forces(self._scene, phi, phi_dot, u_dot)
+        record.lowest_normal = float(np.minimum(record.lowest_normal, forces.normal.min()))
+        record.needed_friction = _largest(record.needed_friction, forces.needed_friction)
+        if math.isfinite(record.rolling_ends_at):
+            return
+        margin = forces.normal
+        if math.isfinite(record.friction):
+            margin = np.minimum(margin, record.friction * forces.normal - np.abs(forces.friction))
+        if margin.min() < 0:
+            ends = int(np.argmax(margin < 0))
+            after = Margin(float(time[ends]), float(margin[ends]))
+            before = Margin(float(time[ends - 1]), float(margin[ends - 1])) if ends > 0 else self._last_margin
+            record.rolling_ends_at = zero_crossing(before, after)
+        self._last_margin = Margin(float(time[-1]), float(margin[-1]))
+
+
+class Margin(NamedTuple):
+    """The force by which a can is kept from leaving the incline or from slipping, whichever is less."""
+
+    time: float
+    """[s]"""
+    force: float
+    """[N]; negative where the can cannot roll."""
+
+
+def zero_crossing(before: Margin, after: Margin) -> float:
+    """Return the time [s] at which a margin vanishes, on a line between two; the later one if there is no earlier one."""
+    if not before.time < after.time:
+        return after.time
+    return before.time + before.force / (before.force - after.force) * (after.time - before.time)
+
+
+class Diagnosis(NamedTuple):
+    """The reasons not to trust a motion, one sentence for each."""
+
+    solver: tuple[str, ...]
+    """Why the equations of motion may not have been solved."""
+    rolling: tuple[str, ...]
+    """Where a can did not, or could not, roll without slipping."""
+    liquid: tuple[str, ...]
+    """Where a liquid is no lump, or slips at rates that its damping is not for."""
+
+
+def diagnose(record: Record, rolling: str, friction: float = math.inf) -> Diagnosis:
+    """Return what a record says against its motion; a contact slips at its coefficient of `friction`."""
+    return Diagnosis(
+        tuple(failed_checks(record, rolling)), tuple(rolling_failures(record, rolling, friction)), _no_lump(record)
+    )
 
 
 def failed_checks(record: Record, rolling: str) -> list[str]:
@@ -176,12 +268,24 @@ def rolling_failures(record: Record, rolling: str, friction: float = math.inf) -
 
 
 def _slip_reasons(record: Record) -> list[str]:
-    reasons, slip, lift = [], record.slip / record.scene.can.radius, record.lift / record.scene.can.radius
+    reasons = []
+    slip = record.slip / record.scene.can.radius
+    lift = record.lift / record.scene.can.radius
     if not slip <= SLIP:
         reasons.append(f"the can slips by {slip:.3g} radii (trusted up to {SLIP:g})")
     if not lift <= LIFT:
         reasons.append(f"the can parts from the incline, or sinks in, by {lift:.3g} radii (trusted up to {LIFT:g})")
     return reasons
+
+
+def _no_lump(record: Record) -> tuple[str, ...]:
+    """Return why the liquid of a scene is no lump in this motion, in one sentence, if it is none."""
+    if record.scene.damping_law.holds is None:
+        return ()
+    spread = f"from t = {record.no_lump_at:.6g} s on" if record.no_lump_at < math.inf else ""
+    turns = record.largest_distance / (math.tau * record.scene.can.radius)
+    warning = lump_warning("the liquid", record.scene, record.largest_slip_rate, spread, turns)
+    return (warning,) if warning else ()
 
 
 def _largest(so_far: float, values: np.ndarray | float) -> float:

@@ -25,9 +25,6 @@ DURATION = 2.0  # [s]
 PHI0 = math.radians(60)  # at the start [rad]
 GRAVITY = 9.81  # [m/s^2]; the paper's footnote 8 has 9.8
 
-load_drawing: list[Callable[[str], Any]] = []
-"""Returns a module that draws motions, by its name. Set by `mjbeer/__init__`; avoids importing drawing here."""
-
 
 @dataclass(frozen=True, repr=False)
 class Scene:

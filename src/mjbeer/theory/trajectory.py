@@ -13,10 +13,17 @@ from numpy.typing import ArrayLike
 from mjbeer import require
 from mjbeer.exceptions import MjbeerError, ParameterError
 from mjbeer.theory import damped_motion, equations, motion
-from mjbeer.theory.equations import Coordinates, Forces, accelerations, axis_motion, rolling_forces, select_samples
-from mjbeer.theory.liquid import lump_warning
-from mjbeer.theory.record import Record, failed_checks, rolling_failures
-from mjbeer.theory.scene import Scene, load_drawing
+from mjbeer.theory.equations import (
+    Coordinates,
+    Forces,
+    InitialState,
+    accelerations,
+    axis_motion,
+    rolling_forces,
+    select_samples,
+)
+from mjbeer.theory.record import Diagnosis, Record, diagnose
+from mjbeer.theory.scene import Scene
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
@@ -96,23 +103,24 @@ class Trajectory(Coordinates):
         return Record.of(self, self.scene, require.non_negative("friction", friction, finite=False)).rolling_ends_at
 
     @cached_property
+    def diagnosis(self) -> Diagnosis:
+        """Return what the record says against the motion."""
+        return diagnose(self.record, self.rolling)
+
+    @property
     def solver_warnings(self) -> tuple[str, ...]:
         """Return the reasons to doubt that the equations of the model were solved, one sentence for each."""
-        return tuple(failed_checks(self.record, self.rolling))
+        return self.diagnosis.solver
 
-    @cached_property
+    @property
     def rolling_warnings(self) -> tuple[str, ...]:
         """Return where a can did not, or could not, roll without slipping, one sentence for each."""
-        return tuple(rolling_failures(self.record, self.rolling))
+        return self.diagnosis.rolling
 
-    @cached_property
+    @property
     def liquid_warnings(self) -> tuple[str, ...]:
         """Return where a liquid is no lump, or slips at rates that its damping is not for, in one sentence."""
-        record = self.record
-        spread = f"from t = {record.no_lump_at:.6g} s on" if record.no_lump_at < math.inf else ""
-        turns = record.largest_distance / (math.tau * self.scene.can.radius)
-        warning = lump_warning("the liquid", self.scene, record.largest_slip_rate, spread, turns)
-        return (warning,) if warning else ()
+        return self.diagnosis.liquid
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -155,7 +163,9 @@ class Trajectory(Coordinates):
         Raises:
           ParameterError: if there is no quantity of a name; the message lists the names.
         """
-        return load_drawing[0]("words").plot(self, *names, theory=theory)
+        from mjbeer.drawing import words
+
+        return words.plot(self, *names, theory=theory)
 
     def video(
         self, path: str | os.PathLike[str] | None = None, width: int = 640, height: int = 360, **others: Any
@@ -164,7 +174,9 @@ class Trajectory(Coordinates):
 
         `width` and `height` are in pixels. The other arguments, and the errors, are those of `mjbeer.render`.
         """
-        load_drawing[0]("video").render(self, path, width, height, **others)
+        from mjbeer.drawing import video
+
+        video.render(self, path, width, height, **others)
 
     def to_dataframe(self) -> Any:
         """Return the motion as a pandas DataFrame: a row for each sample, columns with their units."""
@@ -213,23 +225,34 @@ def exact(scene: Scene, time: ArrayLike, phi0: float, phi_dot0: float = 0.0) -> 
 def exact_motion(scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float) -> Trajectory:
     """Return the motion of `exact`, without a warning about the start."""
     radius = scene.can.radius
+    u0, u_dot0 = scene.start(phi0, phi_dot0)
     try:
         with np.errstate(over="raise", invalid="raise", divide="raise"):
             if scene.dissipates:
                 phi, phi_dot, u, u_dot = damped_motion.solve(scene, time, phi0, phi_dot0)
             else:
                 phi, phi_dot = motion.solve(scene.oscillator, time, phi0, phi_dot0)
-                u, u_dot = axis_motion(scene, time, phi, phi_dot, (phi0, phi_dot0, *scene.start(phi0, phi_dot0)))
-            roll, roll_dot = u / radius, u_dot / radius
+                u, u_dot = axis_motion(scene, time, phi, phi_dot, InitialState(phi0, phi_dot0, u0, u_dot0))
     except ArithmeticError as error:
         raise ParameterError(
             f"this motion is beyond double precision ({error}), got phi0 = {phi0!r} rad, phi_dot0 = {phi_dot0!r} rad/s "
             f"until {float(time.max())!r} s in {scene!r}"
         ) from error
     still = np.zeros_like(time)
-    names = ("time", "u", "phi", "u_dot", "phi_dot", "roll", "roll_dot", "lift", "lift_dot")
-    arrays = zip(names, (time, u, phi, u_dot, phi_dot, roll, roll_dot, still, still), strict=True)
-    return Trajectory(scene=scene, phi0=phi0, phi_dot0=phi_dot0, **dict(arrays))
+    return Trajectory(
+        scene=scene,
+        phi0=phi0,
+        phi_dot0=phi_dot0,
+        time=time,
+        u=u,
+        phi=phi,
+        u_dot=u_dot,
+        phi_dot=phi_dot,
+        roll=u / radius,
+        roll_dot=u_dot / radius,
+        lift=still,
+        lift_dot=still,
+    )
 
 
 def csv(motion: Trajectory) -> str:
@@ -248,16 +271,20 @@ def _columns(motion: Trajectory) -> dict[str, np.ndarray]:
     return columns | {f"{name} force needed [N]": force for name, force in vars(motion.forces).items()}
 
 
-def distance(motion: Coordinates, truth: Coordinates, radius: float, start: tuple[float, float] | None = None) -> float:
+def largest_error(
+    motion: Coordinates, truth: Coordinates, radius: float, start: tuple[float, float] | None = None
+) -> float:
     """Return the largest distance of phi and of u/a [rad] from another motion at the same times.
 
     With phi [rad] and u [m] at the `start`, each distance is divided by the largest angle that `truth`, in order of
     time, has turned from there so far, where that exceeds 1 rad: this is the error that a tolerance bounds.
     """
-    angles, right = (np.array([each.phi, each.u / radius]) for each in (motion, truth))
-    apart = np.abs(angles - right)
+    angles = np.array([motion.phi, motion.u / radius])
+    true_angles = np.array([truth.phi, truth.u / radius])
+    apart = np.abs(angles - true_angles)
     if start is not None:
-        turned = np.abs(right - np.array([[start[0]], [start[1] / radius]]))
+        phi0, u0 = start
+        turned = np.abs(true_angles - np.array([[phi0], [u0 / radius]]))
         apart /= np.maximum(1, np.maximum.accumulate(turned, axis=1))
     return float(apart.max())
 
@@ -265,11 +292,19 @@ def distance(motion: Coordinates, truth: Coordinates, radius: float, start: tupl
 def _turning_times(time: np.ndarray, rate: np.ndarray, change: np.ndarray) -> np.ndarray:
     """Return the times [s] at which `rate` changes sign; in between it is the cubic with its values and derivatives."""
     before = np.flatnonzero(np.diff(rate > 0))
-    step, p0, p1 = np.diff(time)[before], rate[before], rate[before + 1]
-    m0, m1 = step * change[before], step * change[before + 1]
-    low, high = np.zeros_like(step), np.ones_like(step)
+    step = np.diff(time)[before]
+    first = rate[before]
+    last = rate[before + 1]
+    first_slope = step * change[before]
+    last_slope = step * change[before + 1]
+    square = 3 * (last - first) - 2 * first_slope - last_slope
+    cube = 2 * (first - last) + first_slope + last_slope
+    low = np.zeros_like(step)
+    high = np.ones_like(step)
     for _ in range(54):  # bisection to the last digit
-        x = (low + high) / 2
-        value = p0 + x * (m0 + x * (3 * (p1 - p0) - 2 * m0 - m1 + x * (2 * (p0 - p1) + m0 + m1)))
-        low, high = np.where((value > 0) == (p0 > 0), (x, high), (low, x))
+        share = (low + high) / 2
+        value = first + share * (first_slope + share * (square + share * cube))
+        beyond = (value > 0) != (first > 0)
+        low = np.where(beyond, low, share)
+        high = np.where(beyond, share, high)
     return time[before] + step * high

@@ -13,15 +13,14 @@ import numpy as np
 from rich.console import Console
 
 from mjbeer.exceptions import DivergenceError, MjbeerError
-from mjbeer.integrators.dop853 import DOP853
-from mjbeer.integrators.gauss_jackson import GaussJackson
+from mjbeer.integrators.mujoco_steps import MuJoCoSteps
 from mjbeer.model.build import specify
 from mjbeer.model.joints import initial_state, to_coordinates
-from mjbeer.model.setting import INTEGRATORS, ROLLINGS, Setting, supported
+from mjbeer.model.setting import INTEGRATORS, OWN, ROLLINGS, Setting, supported
 from mjbeer.output.terminal import progress_bar
-from mjbeer.simulation.fixed_step import states_after
-from mjbeer.simulation.simulator import Simulator
-from mjbeer.simulation.tolerance import even_at_most
+from mjbeer.simulation.methods import fixed_method, mechanics
+from mjbeer.simulation.solve import solve
+from mjbeer.simulation.stepped_model import SteppedModel
 from mjbeer.studies.benchmark import other_tools, points
 from mjbeer.studies.benchmark.other_tools import OTHER_TOOLS, Samples
 from mjbeer.studies.benchmark.points import CASES, Benchmark, Case, Curve, Point
@@ -127,37 +126,54 @@ def _set_up(case: Case, point: Point) -> tuple[Callable[[], Any], Callable[[Any]
 
     The point is another tool, a model as people usually write it, or a setting of mjbeer.
     """
-    scene, times, value = case.scene, points.TIMES, point.value
     if point.model in OTHER_TOOLS:
-        return OTHER_TOOLS[point.model].set_up(scene, case.phi0, 0.0, times, value), lambda found: found
-    own: DOP853 | GaussJackson | None = None
+        tool = OTHER_TOOLS[point.model]
+        return tool.set_up(case.scene, case.phi0, 0.0, points.TIMES, point.value), lambda found: found
     if point.model in points.USUAL:
-        model = usual_model(point.model, scene)
-        begin = initial_state(model, scene, case.phi0, 0.0)
-        steps = np.rint(times / value).astype(np.int64)
-        solve = partial(states_after, model, mujoco.MjData(model), begin, steps)
+        return _set_up_usual(case, point)
+    return _set_up_setting(case, point)
+
+
+def _set_up_usual(case: Case, point: Point) -> tuple[Callable[[], Any], Callable[[Any], Samples]]:
+    """Return the same for a model as people usually write it."""
+    model = usual_model(point.model, case.scene)
+    start = initial_state(model, case.scene, case.phi0, 0.0)
+    method = MuJoCoSteps(model, mujoco.MjData(model), [point.value], point.method)
+
+    def samples(states: np.ndarray) -> Samples:
+        motion = to_coordinates(model, case.scene, states, points.TIMES)
+        return motion.phi, motion.u, _evaluations_of_steps(point)
+
+    return partial(method.run, start, points.TIMES), samples
+
+
+def _set_up_setting(case: Case, point: Point) -> tuple[Callable[[], Any], Callable[[Any], Samples]]:
+    """Return the same for a setting of mjbeer: its integrator alone if the timestep is fixed, or the whole tolerance."""
+    given: dict[str, Any] = {"tolerance": point.value}
+    if point.parameter == points.TIMESTEP:
+        given = {"integrator": point.method, "timestep": point.value}
+    setting = replace(Setting(), rolling=point.model, **given)
+    stepped = SteppedModel(mechanics(case.scene, setting))
+    start = stepped.initial_state(case.phi0, 0.0)
+    if setting.tolerance is None:
+        run = partial(fixed_method(stepped, setting).run, start, points.TIMES)
     else:
-        given: dict[str, Any] = {"tolerance": value}
-        if point.parameter == points.TIMESTEP:
-            given = {"integrator": point.method, "timestep": value}
-        simulator = Simulator(scene, replace(Setting(), rolling=point.model, **given))
-        model, begin = simulator.model, simulator.initial_state(case.phi0, 0.0)
-        if point.method == "DOP853":
-            own = DOP853(model)
-            solve = partial(own.run, begin, times, value)
-        elif point.method == "GaussJackson":
-            own = GaussJackson(model)
-            solve = partial(own.run, begin, times, value, even_at_most(scene))
-        else:
-            solve = lambda: simulator.solve(begin, times).states  # noqa: E731
+        run = lambda: solve(stepped, setting, start, points.TIMES).states  # noqa: E731
 
-    def motion(states: np.ndarray) -> Samples:
-        found, count = to_coordinates(model, scene, states, times), own.evaluations if own else None
-        if point.method in INTEGRATORS:
-            count = round(float(times[-1]) / value) * (4 if point.method == "RK4" else 1)
-        return found.phi, found.u, count
+    def samples(states: np.ndarray) -> Samples:
+        motion = to_coordinates(stepped.model, case.scene, states, points.TIMES)
+        count = _evaluations_of_steps(point) if point.method in INTEGRATORS else None
+        if point.method in OWN:
+            count = stepped.dynamics.evaluations
+        return motion.phi, motion.u, count
 
-    return solve, motion
+    return run, samples
+
+
+def _evaluations_of_steps(point: Point) -> int:
+    """Return how often one of MuJoCo's integrators evaluates the accelerations with a fixed timestep."""
+    steps = round(float(points.TIMES[-1]) / point.value)
+    return 4 * steps if point.method == "RK4" else steps
 
 
 def _seconds(solve: Callable[[], Any]) -> float:

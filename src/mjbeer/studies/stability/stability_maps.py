@@ -22,13 +22,14 @@ from matplotlib.patches import Patch
 
 from mjbeer.exceptions import DivergenceError
 from mjbeer.integrators.dop853 import DOP853
+from mjbeer.integrators.dynamics import Dynamics
+from mjbeer.integrators.mujoco_steps import MuJoCoSteps
 from mjbeer.model.build import build, specify
 from mjbeer.model.joints import joint_addresses
 from mjbeer.model.setting import INTEGRATORS, Integrator
 from mjbeer.output.plots import COLOURS, chart, name_below
 from mjbeer.output.terminal import Table
 from mjbeer.paper.checks import Check, Result
-from mjbeer.simulation.fixed_step import states_after
 from mjbeer.studies import predictions
 from mjbeer.studies.predictions import ACCURACY, GROWTH, spring
 from mjbeer.studies.study import FAILED
@@ -149,12 +150,14 @@ class Swings:
     def measure(self, timestep: float) -> int:
         """Simulate with a timestep [s] and return the outcome."""
         self._model.opt.timestep = timestep
-        samples = np.arange(self._steps(timestep) + 1)
+        times = timestep * np.arange(self._steps(timestep) + 1)
+        data = mujoco.MjData(self._model)
+        if self._integrator == "DOP853":
+            method = DOP853(Dynamics(self._model, data), timestep)
+        else:
+            method = MuJoCoSteps(self._model, data, [timestep], self._integrator)
         try:
-            if self._integrator == "DOP853":
-                states = DOP853(self._model).run(self._start, samples * timestep, timestep)
-            else:
-                states = states_after(self._model, mujoco.MjData(self._model), self._start, samples)
+            states = method.run(self._start, times)
         except DivergenceError:
             return EXPLODED
         return self._judge(states, timestep)

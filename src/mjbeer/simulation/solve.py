@@ -1,0 +1,107 @@
+"""From a model in a setting to the states of a run, with the record of its steps."""
+
+import math
+from contextlib import suppress
+
+import numpy as np
+
+from mjbeer.exceptions import ToleranceError
+from mjbeer.model.joints import angle_sums, state_sizes
+from mjbeer.model.mujoco_library import LARGEST
+from mjbeer.model.setting import OWN, Setting
+from mjbeer.simulation.methods import finer_dop853, finer_gauss_jackson, fixed_method, suits_gauss_jackson
+from mjbeer.simulation.recorder import Recorder
+from mjbeer.simulation.stepped_model import SteppedModel
+from mjbeer.simulation.tolerance import Problem, Solution, not_reached, solve_to_tolerance
+from mjbeer.theory.scene import Scene, relaxation_rate
+
+NUDGE = 4e-14
+"""Distance of the start of a nudged run, in sizes of the components of the state: a hundred times their rounding."""
+SMALLEST = 1e-12
+"""Smallest tolerance [rad]: below it the rounding of angles decides."""
+EVALUATIONS = 2_000_000
+"""Largest number of evaluations of the accelerations in all runs of a method, which take some seconds."""
+_STABLE = 6.4 / 12
+"""Longest step of DOP853 divided by the time in which damping brings can and load together, for each of its
+evaluations."""
+
+
+def solve(
+    stepped: SteppedModel,
+    setting: Setting,
+    start: np.ndarray,
+    times: np.ndarray,
+    friction: float = math.inf,
+    rounding: float = 0.0,
+) -> Solution:
+    """Return the motion from the state `start` at `times` [s], with the record for a coefficient of `friction`.
+
+    A tolerance has to leave room for the `rounding` [rad] of what is later added to the angles.
+
+    Raises:
+      DivergenceError: if the motion stops being finite.
+      ToleranceError: if the tolerance is not reached; the message says how near the runs came.
+    """
+    if setting.tolerance is None:
+        recorder = Recorder(stepped.model, stepped.scene, friction, within=setting.integrator in OWN)
+        states = fixed_method(stepped, setting).run(start, times, recorder)
+        return Solution(states, recorder.record, None, setting.integrator)
+    if setting.tolerance < SMALLEST:
+        raise not_reached(setting.tolerance, f"less than {SMALLEST:g} rad is lost in the rounding of angles")
+    if setting.tolerance <= rounding:
+        raise not_reached(
+            setting.tolerance,
+            f"doubles near an angle as large as phi0 have errors of up to {rounding:.2g} rad; start fewer turns away",
+        )
+    return _solve_to_tolerance(stepped, start, times, setting.tolerance - rounding, friction)
+
+
+def _solve_to_tolerance(
+    stepped: SteppedModel, start: np.ndarray, times: np.ndarray, tolerance: float, friction: float
+) -> Solution:
+    """Return the motion with an error of phi and u/a below `tolerance` [rad].
+
+    Gauss-Jackson is tried first, if the motion is one for it, and then DOP853.
+    """
+    from mjbeer.simulation.smooth_recorder import SmoothRecorder  # compiled, as the integrators are
+
+    model = stepped.model
+    scene = stepped.scene
+    dynamics = stepped.dynamics
+    _refuse_stiff(scene, times[-1], tolerance)
+    scale = state_sizes(model, scene)
+    nudged = start + NUDGE * scale * _along_energy(dynamics.derivative(start))
+    problem = Problem(start, nudged, times, tolerance, angle_sums(model, scene))
+    if suits_gauss_jackson(scene, model):
+        dynamics.most_evaluations = dynamics.evaluations + EVALUATIONS
+        methods = finer_gauss_jackson(stepped, start, times[-1], tolerance)
+        with suppress(ToleranceError):
+            return solve_to_tolerance(methods, problem, lambda: SmoothRecorder(model, scene, friction))
+    dynamics.most_evaluations = dynamics.evaluations + EVALUATIONS
+    methods = finer_dop853(stepped, tolerance, scale)
+    return solve_to_tolerance(methods, problem, lambda: Recorder(model, scene, friction, within=True))
+
+
+def _along_energy(rates: np.ndarray) -> np.ndarray:
+    """Return the signs with which changes of a state all add to its energy, or all take from it.
+
+    `rates` are the time derivatives of the state: velocities, then accelerations. Work is done against the
+    acceleration, and a velocity is made larger.
+    """
+    velocities, accelerations = np.split(rates, 2)
+    return np.copysign(1.0, np.concatenate([-accelerations, velocities]))
+
+
+def _refuse_stiff(scene: Scene, duration: float, tolerance: float) -> None:
+    """Refuse a damping that brings can and load together so fast that DOP853 would need too many steps."""
+    if not scene.damping_law:
+        return
+    # The weight of can and load, pulling at the rim, drives them apart at most at this rate.
+    slip = min(scene.damping_law.slip_rate(scene.mass * scene.gravity * scene.can.radius), LARGEST)
+    rate = float(relaxation_rate(scene, np.linspace(0, math.pi, 91), slip).max())
+    if rate * duration > _STABLE * EVALUATIONS:
+        raise not_reached(
+            tolerance,
+            f"damping brings can and load together {rate:.2g} times a second, and steps as short as that would be too "
+            f'many over {duration:.6g} s; integrator="implicitfast" has longer ones, and a frozen load is the limit',
+        )

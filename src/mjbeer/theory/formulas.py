@@ -1,0 +1,106 @@
+"""The formulas of a can that rolls without slipping, each written once.
+
+They take numbers and arrays alike: NumPy evaluates them for all samples of a motion, and a compiled loop for one step
+after the other. Angles are in [rad], everything else in SI units. The first argument has the numbers of a scene by
+name; the formulas of the swing alone need only those that an `Oscillator` has, too.
+"""
+
+from typing import Any, NamedTuple, TypeAlias
+
+import numpy as np
+
+Value: TypeAlias = Any
+"""A number, or an array of numbers."""
+
+
+class SceneNumbers(NamedTuple):
+    """What the formulas need to know of a scene."""
+
+    base: float  # constant part of J [kg m^2]
+    chord: float  # coefficient of sin^2(phi/2) in J [kg m^2]
+    coupling: float  # coefficient of sin^2(phi) in J [kg m^2]
+    ramp: float  # mean torque downhill [N m]
+    depth: float  # amplitude of the cosine in V [J]
+    bottom: float  # angle at which the cosine in V has its minimum
+    frozen: bool  # whether the load turns with the can
+    radius: float  # of the can, a [m]
+    can_mass: float  # m_can [kg]
+    can_inertia: float  # I_can [kg m^2]
+    load_mass: float  # m [kg]
+    load_inertia: float  # I_cm [kg m^2]
+    offset: float  # of the load's centre of mass from the axis, b [m]
+    total_mass: float  # m + m_can [kg]
+    effective_mass: float  # M_e = m + m_can + I_can/a^2 [kg]
+    along: float  # g sin(alpha), the part of gravity down the incline [m/s^2]
+    across: float  # g cos(alpha), the part of gravity into the incline [m/s^2]
+
+
+def inertia(swing: Any, phi: Value) -> Value:
+    """Return J [kg m^2], the inertia of the swing."""
+    return swing.base + swing.chord * np.sin(phi / 2) ** 2 + swing.coupling * np.sin(phi) ** 2
+
+
+def swing_energy(swing: Any, phi: Value, phi_dot: Value) -> Value:
+    """Return J phi_dot^2 / 2 [J], the kinetic energy of the swing."""
+    return inertia(swing, phi) * phi_dot**2 / 2
+
+
+def potential_drop(swing: Any, phi: Value, start: Value) -> Value:
+    """Return V(start) - V(phi) [J] without the cancellation of the plain difference."""
+    turned = phi - start
+    middle = (phi + start) / 2 - swing.bottom
+    return swing.ramp * turned - 2 * swing.depth * np.sin(middle) * np.sin(turned / 2)
+
+
+def phi_acceleration(swing: Any, phi: Value, phi_dot: Value, torque: Value) -> Value:
+    """Return phi_ddot [rad/s^2], with a `torque` [N m] beside those of inertia and weight.
+
+    It is the equation of motion J phi_ddot + J' phi_dot^2 / 2 + V' = torque; (16) or (52) for a massless can.
+    """
+    half_slope = swing.chord / 4 * np.sin(phi) + swing.coupling / 2 * np.sin(2 * phi)
+    weight = swing.ramp - swing.depth * np.sin(phi - swing.bottom)
+    return (weight + torque - half_slope * phi_dot**2) / inertia(swing, phi)
+
+
+def axis_acceleration(scene: Any, phi: Value, phi_dot: Value, phi_ddot: Value, braking: Value) -> Value:
+    """Return u_ddot [m/s^2] of a can with a sliding load, against a `braking` force [N]: eq. (46)."""
+    moment = scene.load_mass * scene.offset
+    pull = moment * (np.cos(phi) * phi_ddot - np.sin(phi) * phi_dot**2)
+    return (scene.total_mass * scene.along - braking + pull) / scene.effective_mass
+
+
+def normal_force(scene: Any, phi: Value, phi_dot: Value, phi_ddot: Value) -> Value:
+    """Return N [N], with which the incline presses on the can; below 0 it would have to pull."""
+    moment = scene.load_mass * scene.offset
+    return scene.total_mass * scene.across + moment * (np.sin(phi) * phi_ddot + np.cos(phi) * phi_dot**2)
+
+
+def friction_of_frozen(scene: Any, phi: Value, phi_dot: Value, phi_ddot: Value) -> Value:
+    """Return F [N], positive up the incline, of a can whose load turns with it: what the weight does not accelerate."""
+    moment = scene.load_mass * scene.offset
+    mass_times_acceleration = scene.total_mass * scene.radius * phi_ddot
+    pull = moment * (np.cos(phi) * phi_ddot - np.sin(phi) * phi_dot**2)
+    return scene.total_mass * scene.along - (mass_times_acceleration - pull)
+
+
+def friction_of_sliding(scene: Any, u_ddot: Value, damping_torque: Value) -> Value:
+    """Return F [N], positive up the incline, of a can with a sliding load: it turns the can, and so does the damping."""
+    return scene.can_inertia / scene.radius**2 * u_ddot + damping_torque / scene.radius
+
+
+def kinetic_energy(
+    scene: Any, phi: Value, phi_dot: Value, u_dot: Value, roll_dot: Value, lift_dot: Value
+) -> Value:
+    """Return the kinetic energy [J] of can and load: eqs. (39) and (44), with slip and lift added."""
+    load_along = u_dot - scene.offset * np.cos(phi) * phi_dot
+    load_across = lift_dot + scene.offset * np.sin(phi) * phi_dot
+    can = scene.can_mass * (u_dot**2 + lift_dot**2) + scene.can_inertia * roll_dot**2
+    load = scene.load_mass * (load_along**2 + load_across**2) + scene.load_inertia * phi_dot**2
+    return (can + load) / 2
+
+
+def potential_energy(scene: Any, phi: Value, u: Value, lift: Value) -> Value:
+    """Return the potential energy [J] of can and load, 0 with all mass at u = 0 on the axis."""
+    moment = scene.load_mass * scene.offset
+    load = moment * (scene.across * np.cos(phi) - scene.along * np.sin(phi))  # m b g cos(alpha + phi)
+    return scene.total_mass * (lift * scene.across - u * scene.along) - load
