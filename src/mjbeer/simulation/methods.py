@@ -121,9 +121,12 @@ def finer_dop853(stepped: SteppedModel, tolerance: float, scale: np.ndarray) -> 
     from mjbeer.integrators.dop853 import DOP853
 
     local = min(_FIRST_LOCAL * tolerance, _COARSEST_LOCAL)
+    local = max(local, _FINER_LOCAL * _SMALLEST_LOCAL)
     longest_step = math.inf
-    while local >= _SMALLEST_LOCAL:
+    while True:
         method = DOP853(stepped.dynamics, local_tolerance=local, scale=scale, longest_step=longest_step)
         yield method
+        if local <= _SMALLEST_LOCAL:
+            return
         longest_step = method.longest_step_taken / _SHORTER
-        local /= _FINER_LOCAL
+        local = max(local / _FINER_LOCAL, _SMALLEST_LOCAL)

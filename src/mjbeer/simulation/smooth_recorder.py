@@ -5,7 +5,6 @@ at their ends and in their middles only. It makes the record that `RecordMaker` 
 """
 
 import math
-from typing import NamedTuple
 
 import mujoco
 import numpy as np
@@ -32,43 +31,42 @@ for _formula in (
     register_jitable(_formula)
 
 
-class Passed(NamedTuple):
-    """What has to be known of the steps so far to go on."""
+_EXTREMES = (
+    "largest_turn",
+    "largest_distance",
+    "angle_covered",
+    "largest_rate",
+    "swing_energy",
+    "kinetic_energy",
+    "energy_change",
+    "swing_change",
+    "swing_drift",
+    "axis_drift",
+    "lowest_normal",
+    "needed_friction",
+    "rolling_ends_at",
+)
+"""What is found, by the names of `Record`."""
+_PASSED = (
+    "phi0",  # at the start [rad]
+    "u0",  # [m]
+    "mean_u0",  # u less what the swing adds to it, (m b / M_e) sin(phi) [m]
+    "mean_u_dot0",  # its rate [m/s]
+    "swing0",  # kinetic energy of the swing [J]
+    "energy0",  # total energy [J]
+    "time",  # at the last step [s]
+    "phi",  # [rad]
+    "phi_dot",  # [rad/s]
+    "drift",  # integral of the change of the swing's energy over the angle covered [J rad]
+    "checked",  # when forces were last looked at [s]
+    "margin",  # force by which the can then neither left the incline nor slipped [N]
+)
+"""What has to be known of the steps so far to go on."""
 
-    phi0: float  # at the start [rad]
-    u0: float  # [m]
-    mean_u0: float  # u less what the swing adds to it, (m b / M_e) sin(phi) [m]
-    mean_u_dot0: float  # its rate [m/s]
-    swing0: float  # kinetic energy of the swing [J]
-    energy0: float  # total energy [J]
-    time: float  # at the last step [s]
-    phi: float  # [rad]
-    phi_dot: float  # [rad/s]
-    drift: float  # integral of the change of the swing's energy over the angle covered [J rad]
-    margin: float  # force by which the can neither left the incline nor slipped [N]
 
-
-class Forces(NamedTuple):
-    """The extremes of forces, by the names of `Record`."""
-
-    lowest_normal: float
-    needed_friction: float
-    rolling_ends_at: float
-
-
-class Extremes(NamedTuple):
-    """The other extremes, by the names of `Record`."""
-
-    largest_turn: float = 0.0
-    largest_distance: float = 0.0
-    angle_covered: float = 0.0
-    largest_rate: float = 0.0
-    swing_energy: float = 0.0
-    kinetic_energy: float = 0.0
-    energy_change: float = 0.0
-    swing_change: float = 0.0
-    swing_drift: float = 0.0
-    axis_drift: float = 0.0
+def _row_of(names: tuple[str, ...]) -> np.ndarray:
+    """Return a row of numbers with these names, all 0, which compiled code can change; shape (1,)."""
+    return np.zeros(1, [(name, np.float64) for name in names])
 
 
 class SmoothRecorder:
@@ -79,50 +77,31 @@ class SmoothRecorder:
         self._friction = friction
         self._slides = model.nv == 2
         self._numbers = scene_numbers(scene)
-        self._passed: Passed | None = None
-        self._forces = Forces(math.inf, 0.0, math.inf)
-        self._extremes = Extremes()
+        self._passed = _row_of(_PASSED)
+        self._extremes = _row_of(_EXTREMES)
+        self._extremes["lowest_normal"] = math.inf
+        self._extremes["rolling_ends_at"] = math.inf
+        self._begun = False
 
     @property
     def record(self) -> Record:
         """Return the record of the steps so far."""
-        return Record(self._scene, self._friction, **self._extremes._asdict(), **self._forces._asdict())
+        values = self._extremes[0].tolist()
+        return Record(self._scene, self._friction, **dict(zip(_EXTREMES, values, strict=True)))
 
     def __call__(self, times: np.ndarray, states: np.ndarray) -> None:
         """Add the next steps."""
-        first = 0
-        if self._passed is None:
-            first = 1
-            self._begin(states[0])
-        self._passed, self._forces, self._extremes = _add(
-            self._numbers, self._friction, self._slides, times[first:], states[first:],
-            self._passed, self._forces, self._extremes,
-        )  # fmt: skip
-
-    def _begin(self, start: np.ndarray) -> None:
-        """Begin with the state in which the run starts."""
-        numbers = self._numbers
-        u, phi, u_dot, phi_dot = (float(value) for value in _coordinates.py_func(numbers, self._slides, start))
-        arm = self._scene.load.moment / numbers.effective_mass
-        swing = float(formulas.swing_energy(numbers, phi, phi_dot))
-        kinetic = float(formulas.kinetic_energy(numbers, phi, phi_dot, u_dot, u_dot / numbers.radius, 0.0))
-        self._extremes = Extremes(largest_rate=abs(phi_dot), swing_energy=swing, kinetic_energy=kinetic)
-        self._forces, margin = _look.py_func(
-            numbers, self._friction, 0.0, phi, phi_dot, 0.0, math.nan, self._forces
+        _add(
+            self._numbers,
+            self._friction,
+            self._slides,
+            self._begun,
+            times,
+            states,
+            self._passed,
+            self._extremes,
         )
-        self._passed = Passed(
-            phi0=phi,
-            u0=u,
-            mean_u0=u - arm * math.sin(phi),
-            mean_u_dot0=u_dot - arm * math.cos(phi) * phi_dot,
-            swing0=swing,
-            energy0=kinetic + float(formulas.potential_energy(numbers, phi, u, 0.0)),
-            time=0.0,
-            phi=phi,
-            phi_dot=phi_dot,
-            drift=0.0,
-            margin=margin,
-        )
+        self._begun = True
 
 
 @inlined
@@ -134,11 +113,8 @@ def _coordinates(numbers, slides, state):
 
 
 @inlined
-def _look(numbers, friction, time, phi, phi_dot, earlier, margin_before, forces):
-    """Return the extremes with the `forces` in a state, and the margin [N] there.
-
-    The margin `earlier` [s] was `margin_before`.
-    """
+def _add_forces(numbers, friction, time, phi, phi_dot, passed, extremes):
+    """Add the forces that rolling needs in a state."""
     phi_ddot = formulas.phi_acceleration(numbers, phi, phi_dot, 0.0)
     normal = formulas.normal_force(numbers, phi, phi_dot, phi_ddot)
     if numbers.frozen:
@@ -146,70 +122,83 @@ def _look(numbers, friction, time, phi, phi_dot, earlier, margin_before, forces)
     else:
         u_ddot = formulas.axis_acceleration(numbers, phi, phi_dot, phi_ddot, 0.0)
         pull = abs(formulas.friction_of_sliding(numbers, u_ddot, 0.0))
+    extremes.lowest_normal = min(extremes.lowest_normal, normal)
+    if pull > extremes.needed_friction * normal:
+        extremes.needed_friction = pull / normal if normal > 0 else np.inf
     margin = normal
     if friction < np.inf:
         margin = min(normal, friction * normal - pull)
-    ends_at = forces.rolling_ends_at
-    if margin < 0 and ends_at == np.inf:
-        ends_at = time
-        if margin_before >= 0:
-            ends_at = earlier + margin_before / (margin_before - margin) * (time - earlier)
-    needed = forces.needed_friction
-    if pull > needed * normal:
-        needed = pull / normal if normal > 0 else np.inf
-    return Forces(min(forces.lowest_normal, normal), needed, ends_at), margin
+    if margin < 0 and extremes.rolling_ends_at == np.inf:
+        share = passed.margin / (passed.margin - margin)  # of the line between two margins, above 0
+        extremes.rolling_ends_at = passed.checked + share * (time - passed.checked)
+    passed.checked = time
+    passed.margin = margin
+
+
+@inlined
+def _begin(numbers, friction, slides, state, passed, extremes):
+    """Begin with the state in which the run starts."""
+    u, phi, u_dot, phi_dot = _coordinates(numbers, slides, state)
+    arm = numbers.load_mass * numbers.offset / numbers.effective_mass
+    kinetic = formulas.kinetic_energy(numbers, phi, phi_dot, u_dot, u_dot / numbers.radius, 0.0)
+    passed.phi0 = phi
+    passed.u0 = u
+    passed.mean_u0 = u - arm * math.sin(phi)
+    passed.mean_u_dot0 = u_dot - arm * math.cos(phi) * phi_dot
+    passed.swing0 = formulas.swing_energy(numbers, phi, phi_dot)
+    passed.energy0 = kinetic + formulas.potential_energy(numbers, phi, u, 0.0)
+    passed.phi = phi
+    passed.phi_dot = phi_dot
+    extremes.largest_rate = abs(phi_dot)
+    extremes.swing_energy = passed.swing0
+    extremes.kinetic_energy = kinetic
+    _add_forces(numbers, friction, 0.0, phi, phi_dot, passed, extremes)
+
+
+@inlined
+def _add_step(numbers, friction, slides, time, state, passed, extremes):
+    """Add a step that ends at a time [s] in a state."""
+    u, phi, u_dot, phi_dot = _coordinates(numbers, slides, state)
+    step = time - passed.time
+    # In the middle of the cubic that has the angles and the rates at both ends.
+    middle_phi = (phi + passed.phi) / 2 + step * (passed.phi_dot - phi_dot) / 8
+    middle_rate = 1.5 * (phi - passed.phi) / step - (phi_dot + passed.phi_dot) / 4
+    _add_forces(numbers, friction, passed.time + step / 2, middle_phi, middle_rate, passed, extremes)
+    _add_forces(numbers, friction, time, phi, phi_dot, passed, extremes)
+
+    kinetic = formulas.kinetic_energy(numbers, phi, phi_dot, u_dot, u_dot / numbers.radius, 0.0)
+    energy = kinetic + formulas.potential_energy(numbers, phi, u, 0.0)
+    swing = formulas.swing_energy(numbers, phi, phi_dot)
+    change = swing - (passed.swing0 + formulas.potential_drop(numbers, phi, passed.phi0))
+    covered = abs(phi - passed.phi)
+    passed.drift += change * covered
+    extremes.largest_turn = max(extremes.largest_turn, abs(phi - passed.phi0))
+    extremes.largest_distance = max(extremes.largest_distance, abs(u - passed.u0))
+    extremes.angle_covered += covered
+    extremes.largest_rate = max(extremes.largest_rate, abs(phi_dot))
+    extremes.swing_energy = max(extremes.swing_energy, swing)
+    extremes.kinetic_energy = max(extremes.kinetic_energy, kinetic)
+    extremes.energy_change = max(extremes.energy_change, abs(energy - passed.energy0))
+    extremes.swing_change = max(extremes.swing_change, abs(change))
+    extremes.swing_drift = max(extremes.swing_drift, abs(passed.drift))
+    if slides:  # a frozen load conserves no momentum
+        arm = numbers.load_mass * numbers.offset / numbers.effective_mass
+        steady = numbers.total_mass * numbers.along / numbers.effective_mass
+        expected = passed.mean_u0 + time * (passed.mean_u_dot0 + steady * time / 2)
+        extremes.axis_drift = max(extremes.axis_drift, abs(u - arm * math.sin(phi) - expected))
+    passed.time = time
+    passed.phi = phi
+    passed.phi_dot = phi_dot
 
 
 @kernel
-def _add(numbers, friction, slides, times, states, passed, forces, extremes):
-    """Return what has passed, and both kinds of extremes, with the next steps added."""
-    arm = numbers.load_mass * numbers.offset / numbers.effective_mass
-    steady = numbers.total_mass * numbers.along / numbers.effective_mass
-    for row in range(times.size):
-        time = times[row]
-        u, phi, u_dot, phi_dot = _coordinates(numbers, slides, states[row])
-        step = time - passed.time
-        middle = passed.time + step / 2
-        # In the middle of the cubic with the angles and the rates at both ends.
-        middle_phi = (phi + passed.phi) / 2 + step * (passed.phi_dot - phi_dot) / 8
-        middle_rate = 1.5 * (phi - passed.phi) / step - (phi_dot + passed.phi_dot) / 4
-        forces, between = _look(
-            numbers, friction, middle, middle_phi, middle_rate, passed.time, passed.margin, forces
-        )
-        forces, margin = _look(numbers, friction, time, phi, phi_dot, middle, between, forces)
-        kinetic = formulas.kinetic_energy(numbers, phi, phi_dot, u_dot, u_dot / numbers.radius, 0.0)
-        energy = kinetic + formulas.potential_energy(numbers, phi, u, 0.0)
-        swing = formulas.swing_energy(numbers, phi, phi_dot)
-        change = swing - (passed.swing0 + formulas.potential_drop(numbers, phi, passed.phi0))
-        covered = abs(phi - passed.phi)
-        drift = passed.drift + change * covered
-        axis_drift = 0.0
-        if slides:
-            expected = passed.mean_u0 + time * (passed.mean_u_dot0 + steady * time / 2)
-            axis_drift = u - arm * math.sin(phi) - expected
-        extremes = Extremes(
-            max(extremes.largest_turn, abs(phi - passed.phi0)),
-            max(extremes.largest_distance, abs(u - passed.u0)),
-            extremes.angle_covered + covered,
-            max(extremes.largest_rate, abs(phi_dot)),
-            max(extremes.swing_energy, swing),
-            max(extremes.kinetic_energy, kinetic),
-            max(extremes.energy_change, abs(energy - passed.energy0)),
-            max(extremes.swing_change, abs(change)),
-            max(extremes.swing_drift, abs(drift)),
-            max(extremes.axis_drift, abs(axis_drift)),
-        )
-        passed = Passed(
-            passed.phi0,
-            passed.u0,
-            passed.mean_u0,
-            passed.mean_u_dot0,
-            passed.swing0,
-            passed.energy0,
-            time,
-            phi,
-            phi_dot,
-            drift,
-            margin,
-        )
-    return passed, forces, extremes
+def _add(numbers, friction, slides, begun, times, states, passed_row, extremes_row):
+    """Add steps, the first of which is the start if nothing has `begun`, to what has passed and to the extremes."""
+    passed = passed_row[0]
+    extremes = extremes_row[0]
+    first = 0
+    if not begun:
+        _begin(numbers, friction, slides, states[0], passed, extremes)
+        first = 1
+    for row in range(first, times.size):
+        _add_step(numbers, friction, slides, times[row], states[row], passed, extremes)

@@ -12,7 +12,7 @@ from mjbeer.model.setting import OWN, Setting
 from mjbeer.simulation.methods import finer_dop853, finer_gauss_jackson, fixed_method, suits_gauss_jackson
 from mjbeer.simulation.recorder import Recorder
 from mjbeer.simulation.stepped_model import SteppedModel
-from mjbeer.simulation.tolerance import Problem, Solution, not_reached, solve_to_tolerance
+from mjbeer.simulation.tolerance import SAFETY, Problem, Solution, not_reached, solve_to_tolerance
 from mjbeer.theory.scene import Scene, relaxation_rate
 
 NUDGE = 4e-14
@@ -74,7 +74,7 @@ def _solve_to_tolerance(
     problem = Problem(start, nudged, times, tolerance, angle_sums(model, scene))
     if suits_gauss_jackson(scene, model):
         dynamics.most_evaluations = dynamics.evaluations + EVALUATIONS
-        methods = finer_gauss_jackson(stepped, start, times[-1], tolerance)
+        methods = finer_gauss_jackson(stepped, start, times[-1], tolerance / SAFETY)
         with suppress(ToleranceError):
             return solve_to_tolerance(methods, problem, lambda: SmoothRecorder(model, scene, friction))
     dynamics.most_evaluations = dynamics.evaluations + EVALUATIONS
