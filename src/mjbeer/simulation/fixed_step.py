@@ -1,26 +1,15 @@
-"""MuJoCo's own integrators, and the record of all steps of a run, made while a model is stepped."""
+"""The record of all steps of a run, made while a model is stepped."""
 
 import math
-from collections.abc import Generator, Sequence
-from copy import copy
 from typing import NamedTuple
 
 import mujoco
 import numpy as np
-from mujoco.rollout import rollout
 
-from mjbeer.exceptions import DivergenceError
-from mjbeer.integrators import Observer
 from mjbeer.model.joints import to_coordinates
-from mjbeer.model.mujoco_library import LARGEST, quiet
 from mjbeer.theory.equations import Coordinates, accelerations
 from mjbeer.theory.record import Record
 from mjbeer.theory.scene import Scene
-
-_BLOCK = 4096
-"""Steps between two returns to Python, where a run can be interrupted: their states fit into a processor's cache."""
-_STATE = mujoco.mjtState.mjSTATE_FULLPHYSICS
-"""MuJoCo's state of a run: time, positions and rates first."""
 
 
 class Solution(NamedTuple):
@@ -30,72 +19,6 @@ class Solution(NamedTuple):
     record: Record | None  # the extremes of all steps, if they were asked for
     error: float | None  # estimate for phi and u/a [rad], relative beyond 1 rad; None if there was no second run
     integrator: str  # its name
-
-
-def blocks(
-    model: mujoco.MjModel, data: mujoco.MjData, start: np.ndarray, count: int, timesteps: Sequence[float] = ()
-) -> Generator[np.ndarray]:
-    """Yield the states at the ends of `count` steps from `start`, in blocks, shape (steps, nq + nv).
-
-    A step is one timestep of the model's, or these `timesteps` [s] one after the other. The next block overwrites the
-    one before.
-
-    Raises:
-      DivergenceError: if the motion stops being finite; the message names the time and MuJoCo's reason.
-    """
-    timesteps = timesteps or [model.opt.timestep]
-    models = [model, *(copy(model) for _ in timesteps[1:])]
-    for each, timestep in zip(models, timesteps, strict=True):
-        each.opt.timestep = timestep
-    rows = np.empty((1, _BLOCK, mujoco.mj_stateSize(model, _STATE)))
-    mujoco.mj_resetData(model, data)
-    data.qpos[:], data.qvel[:] = np.split(start, [model.nq])
-    for first in range(0, count, _BLOCK):
-        block = rows[:, : min(_BLOCK, count - first)]
-        states = block[0, :, 1 : 1 + len(start)]
-        with quiet():
-            if len(models) == 1:
-                state = np.empty((1, rows.shape[2]))
-                mujoco.mj_getState(model, data, state[0], _STATE)
-                guess = data.qacc_warmstart[None]
-                rollout([model], data, state, nstep=len(states), initial_warmstart=guess, state=block, skip_checks=True)
-            else:
-                for row in states:
-                    for each in models:
-                        mujoco.mj_step(each, data)
-                    row[: model.nq], row[model.nq :] = data.qpos, data.qvel
-        causes = [mujoco.mju_warningText(kind, 0) for kind in np.flatnonzero(data.warning.number)]
-        if causes or not max(np.abs(states).max(), np.abs(data.qacc).max()) < LARGEST:
-            finite = (np.abs(states) < LARGEST).all(axis=1)
-            time = (first + int(finite.argmin() if not finite.all() else len(states))) * sum(timesteps)
-            cause = "; ".join(causes) or "its state is no longer finite"
-            raise DivergenceError(f"the run diverged at t = {time:.6g} s: {cause}")
-        yield states
-
-
-def states_after(
-    model: mujoco.MjModel,
-    data: mujoco.MjData,
-    start: np.ndarray,
-    steps: np.ndarray,
-    timesteps: Sequence[float] = (),
-    observer: Observer | None = None,
-) -> np.ndarray:
-    """Return the states after increasing numbers of `steps` from `start`, shape (samples, nq + nv); see `blocks`.
-
-    The `observer` is shown all steps.
-    """
-    states, done = np.empty((len(steps), len(start))), 0
-    states[steps == 0] = start
-    if observer:
-        observer(np.zeros(1), start[None])
-    for block in blocks(model, data, start, int(steps[-1]), timesteps):
-        begin, end = np.searchsorted(steps, [done + 1, done + len(block) + 1])
-        states[begin:end] = block[steps[begin:end] - done - 1]
-        if observer:
-            observer(sum(timesteps or [model.opt.timestep]) * np.arange(done + 1, done + len(block) + 1), block)
-        done += len(block)
-    return states
 
 
 class Recorder:

@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING
 import mujoco
 import numpy as np
 
+from mjbeer.integrators.mujoco_steps import MuJoCoSteps
 from mjbeer.model.build import compiled_model, write_numbers
 from mjbeer.model.joints import initial_state
 from mjbeer.model.mechanics import Mechanics, Structure
 from mjbeer.model.mjcf_file import compiled_views
 from mjbeer.model.setting import OWN, Setting
-from mjbeer.simulation.fixed_step import Recorder, Solution, states_after
+from mjbeer.simulation.fixed_step import Recorder, Solution
 from mjbeer.theory.scene import Scene
 
 if TYPE_CHECKING:
@@ -64,7 +65,7 @@ class Simulator:
             write_numbers(self.model, self.data, mechanics, self._views)
             self._written = mechanics
         if self._dynamics is not None:
-            self._dynamics.begin()
+            self._dynamics.model_has_changed()
 
     def initial_state(self, phi0: float, phi_dot0: float) -> np.ndarray:
         """Return the state of a start at `phi0` [rad] with `phi_dot0` [rad/s], shape (nq + nv,)."""
@@ -86,14 +87,13 @@ class Simulator:
             recorder = Recorder(model, scene, friction, within=integrator in OWN)
         if tolerance is None and integrator not in OWN:
             parts = (_GOLDEN_SECTION * timestep, (1 - _GOLDEN_SECTION) * timestep) if self._uneven else (timestep,)
-            steps = np.rint(times / timestep).astype(np.int64)
-            states = states_after(model, self.data, start, steps, parts, recorder)
+            states = MuJoCoSteps(model, self.data, parts, integrator).run(start, times, recorder)
             return Solution(states, recorder.record if recorder else None, None, integrator)
         # Imported only here: numba, which compiles them, takes longer to import than all else together.
         from mjbeer.integrators.dop853 import DOP853
         from mjbeer.integrators.dynamics import Dynamics
-        from mjbeer.integrators.gauss_jackson import GaussJackson
-        from mjbeer.simulation.tolerance import ToleranceLoop, even_at_most
+        from mjbeer.integrators.gauss_jackson import GaussJackson, sundman_time
+        from mjbeer.simulation.tolerance import ToleranceLoop, swing_law
 
         dynamics = self._dynamics = self._dynamics or Dynamics(model, self.data)
         if tolerance is not None:
@@ -102,9 +102,11 @@ class Simulator:
         if self._uneven:
             timestep *= _GOLDEN_SECTION
         if integrator == "DOP853":
-            states = DOP853(model, dynamics).run(start, times, timestep, observer=recorder)
+            states = DOP853(dynamics, timestep).run(start, times, recorder)
         else:
-            states = GaussJackson(model, dynamics).run(start, times, timestep, even_at_most(scene), recorder)
+            law = swing_law(scene)
+            method = GaussJackson(dynamics, timestep, sundman_time(law, law.largest_inertia()))
+            states = method.run(start, times, recorder)
         return Solution(states, recorder.record if recorder else None, None, integrator)
 
 

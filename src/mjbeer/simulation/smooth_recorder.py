@@ -5,7 +5,7 @@ import math
 import mujoco
 import numpy as np
 
-from mjbeer.integrators.dynamics import compiled, small
+from mjbeer.integrators.compiling import kernel, optimize_for_size
 from mjbeer.model.joints import to_coordinates
 from mjbeer.simulation.fixed_step import Recorder
 from mjbeer.theory.scene import Scene
@@ -56,7 +56,7 @@ class SmoothRecorder(Recorder):
             record.rolling_ends_at = min(record.rolling_ends_at, float(times[row]))
 
 
-@compiled
+@kernel
 def _update(numbers, times, states, found, start, now, before):
     """Add states at `times` [s] to what was `found`, as `Record.add` does, and return the first row that cannot roll.
 
@@ -64,7 +64,7 @@ def _update(numbers, times, states, found, start, now, before):
     `start` for what the first one had. What was `before`, and is returned anew, are phi0, the speed of the axis at the
     start less its swing, and time, phi and its rate at the last state.
     """
-    small()
+    optimize_for_size()
     base, chord, coupling, ramp, lean, weight, unit, can_mass, load_mass, offset, load_inertia = numbers[:11]
     down, normally, all_mass, arm, drive, steady, friction, by_drive, by_swing, by_turning = numbers[11:]
     size, moment, slips = states.shape[1] // 2, load_mass * offset, times.size

@@ -5,11 +5,10 @@ import math
 import mujoco
 import numpy as np
 
-from mjbeer.exceptions import DivergenceError, ToleranceError, UnsupportedError
+from mjbeer.exceptions import DivergenceError, ToleranceError
 from mjbeer.integrators.dop853 import DOP853
 from mjbeer.integrators.dynamics import Dynamics
-from mjbeer.integrators.gauss_jackson import GaussJackson
-from mjbeer.integrators.uneven_time import OwnTime, own_time
+from mjbeer.integrators.gauss_jackson import GaussJackson, SwingLaw, first_timestep, sundman_time
 from mjbeer.model.joints import joint_addresses
 from mjbeer.model.mujoco_library import LARGEST
 from mjbeer.simulation.fixed_step import Recorder, Solution
@@ -33,9 +32,6 @@ _ASYMPTOTIC = (1e-11, 1e-5)
 _NUDGE = 4e-14
 """Distance of the first run's start from the given start, over the size of each component: the distance of the first
 two runs then includes the effect of a small change of the start, which is large beside a separatrix."""
-_PUSH = 2e-15
-"""Steady change of phi_ddot in a nudged run of Gauss-Jackson, over g/a: it shows where a small change of energy on
-the way matters and one of the start does not, as for a swing that comes near a barrier's top."""
 _ROUNDING = 0.3
 """Effect of the rounding of Gauss-Jackson over that of nudge and push: in 1,500 random motions of sliding loads, judged
 by motions of 33 digits, it was 0.1 at most and 0.01 in the median. With 0.15, 2 of 50,801 tolerances were broken."""
@@ -71,13 +67,6 @@ keep a local tolerance, and two runs with the same steps have the same error."""
 _FINER = 1.35
 """Timestep of one run of Gauss-Jackson over that of the next. The distance of the two is the error of the coarser one,
 37 times that of the finer one, for which it is taken. At a ratio of 1.15 two errors of 1e-4 were 1e-6 apart."""
-_SHARE, _REFERENCE, _ADDED, _POWER = 0.078, 1e-9, 1.5, 1 / 14
-"""First timestep of Gauss-Jackson over the distance of the nearest pole, for an error of 1e-9 rad in a cycle; powers of
-the number of cycles with which errors add up, and of an error with which a timestep grows. Nine of ten of 1,466 random
-motions allow 1.03 times the timestep or more."""
-_GAP = 2.5
-"""Energy below or above the crest, over the depth of the well, from which on a load hardly lingers there: beside the
-crest the time of a swing, and so its error, grows as the inverse of that energy."""
 _TRIES = 3
 """Largest number of finer runs of Gauss-Jackson."""
 
@@ -100,10 +89,7 @@ class ToleranceLoop:
         uneven = max(shape.coupling, shape.chord / 4) / shape.base  # half angles of a chord count half
         self._light, lightest = uneven > _LIGHT, uneven > _LIGHTEST
         self._size = _NUDGE * max(1.0, shape.coupling / (_LIGHT * shape.base)) * self._scale
-        try:
-            self._gauss_jackson = None if lightest else GaussJackson(model, self._dynamics)
-        except UnsupportedError:
-            self._gauss_jackson = None
+        self._gauss_jackson = not (lightest or dynamics.constrained or dynamics.damped)
 
     def run(self, start: np.ndarray, times: np.ndarray, tolerance: float, friction: float) -> Solution:
         """Return states at `times` [s] whose error of phi and u/a is below `tolerance` [rad] (relative beyond 1 rad).
@@ -126,21 +112,20 @@ class ToleranceLoop:
                 f'too many over {times[-1]:.6g} s; integrator="implicitfast" has longer ones, and a frozen load is the '
                 "limit",
             )
-        self._left = _EVALUATIONS
+        self._dynamics.evaluations, self._dynamics.most_evaluations = 0, _EVALUATIONS
         # The nudge adds to the energy of the swing by phi and by its rate, and the push by the first motion.
         phi, phi_dot = (float(part @ self._angles[: len(part), 0]) for part in np.split(start, 2))
         gain = float(self._scene.oscillator.acceleration(phi, phi_dot))
-        self._push = math.copysign(_PUSH * (self._scale[-1] / self._scale[len(start) // 2 - 1]) ** 2, phi_dot or gain)
         self._nudge = self._size * np.repeat([math.copysign(1.0, -gain), math.copysign(1.0, phi_dot)], len(start) // 2)
-        if self._gauss_jackson is not None:
+        if self._gauss_jackson:
             # What is asked for more loosely has the timestep of this tolerance, which is nearly the longest.
             tight = min(tolerance, _ASYMPTOTIC[1])
-            if found := self._by_gauss_jackson(self._gauss_jackson, start, times, tight, friction):
+            if found := self._by_gauss_jackson(start, times, tight, friction):
                 return found
         return self._by_dop853(start, times, tolerance, friction)
 
     def _by_gauss_jackson(
-        self, method: GaussJackson, start: np.ndarray, times: np.ndarray, tolerance: float, friction: float
+        self, start: np.ndarray, times: np.ndarray, tolerance: float, friction: float
     ) -> Solution | None:
         """Return the solution, or None if it is not within the `tolerance` [rad].
 
@@ -150,30 +135,28 @@ class ToleranceLoop:
         compared = slice((len(times) - 1) % stride, None, stride)  # with the last one
         some_times = np.ascontiguousarray(times[compared])
         safety = _BRIEF if self._light else 1.0
-        phi0, phi_dot0 = float(start[method.size - 1]), float(start[-1])
-        timestep, fastest = _longest(self._scene, phi0, phi_dot0, times[-1], tolerance / safety)
-        own = pendulum_time(self._scene, phi0, 1e-3 * tolerance, timestep * fastest)
+        phi0, phi_dot0, dynamics = float(start[len(start) // 2 - 1]), float(start[-1]), self._dynamics
+        law = swing_law(self._scene)
+        timestep, turn = first_timestep(law, phi0, phi_dot0, times[-1], tolerance / safety)
+        own = sundman_time(law, law.inertia(phi0), 1e-3 * tolerance, turn)
         try:
             for _ in range(_TRIES):
-                coarse = method.run(start + self._nudge, some_times, timestep, own, None, self._push, self._left / 2)
-                self._left -= method.evaluations
+                coarse = GaussJackson(dynamics, timestep, own).run(start + self._nudge, some_times)
                 recorder = SmoothRecorder(self._model, self._scene, friction)
-                fine = method.run(start, times, timestep / _FINER, own, recorder, 0.0, self._left / 2)
-                self._left -= method.evaluations
+                fine = GaussJackson(dynamics, timestep / _FINER, own).run(start, times, recorder)
                 compare = np.ascontiguousarray(fine[compared])
                 distance = _distance(self._angles, coarse, compare, start)
                 record = recorder.record
                 drift = max(_DRIFT * record.swing_error, record.axis_error)
                 rounding = _ROUNDING
                 if self._scene.oscillator.chord > 0:
-                    chord = float(np.abs(np.cos(compare[:, method.size - 1] / 2)).min())
+                    chord = float(np.abs(np.cos(compare[:, len(start) // 2 - 1] / 2)).min())
                     rounding = min(_CHORD_AT_MOST, _CHORD / chord)
                 safety = max(safety, rounding)
                 hopeful = max(safety * rounding * distance, drift) <= tolerance < safety * distance
                 if hopeful or tolerance < _ASYMPTOTIC[0]:
                     # It may be the nudge alone, of which rounding is a part. Or rounding has made up for the nudge.
-                    plain = method.run(start, some_times, timestep, own, None, 0.0, self._left / 2)
-                    self._left -= method.evaluations
+                    plain = GaussJackson(dynamics, timestep, own).run(start, some_times)
                     nudged = _distance(self._angles, coarse, plain, start)
                     distance = max(_distance(self._angles, plain, compare, start), rounding * nudged)
                 error = max(safety * distance, drift)
@@ -186,18 +169,18 @@ class ToleranceLoop:
 
     def _by_dop853(self, start: np.ndarray, times: np.ndarray, tolerance: float, friction: float) -> Solution:
         """Return the solution by ever finer runs of DOP853."""
-        integrator, limit, longest = DOP853(self._model, self._dynamics), math.inf, math.inf
+        dynamics, limit, longest = self._dynamics, math.inf, math.inf
 
         def run(start: np.ndarray, local: float, recorder: Recorder | None = None) -> np.ndarray:
             nonlocal limit, longest
-            most = min(limit, self._left)
+            before, method = dynamics.evaluations, DOP853(dynamics, None, local, self._scale, longest)
+            dynamics.most_evaluations = min(before + limit, _EVALUATIONS)
             try:
-                states = integrator.run(start, times, None, local, self._scale, most, longest, recorder)
+                states = method.run(start, times, recorder)
             except DivergenceError as error:
                 raise _not_reached(tolerance, str(error)) from error
-            self._left -= integrator.evaluations
             # With four times the evaluations of the run before it is rounding that makes the steps small.
-            limit, longest = 4 * integrator.evaluations, integrator.longest / _SHORTER
+            limit, longest = 4 * (dynamics.evaluations - before), method.longest_step_taken / _SHORTER
             return states
 
         local = max(min(_FIRST * tolerance, _COARSEST), _FIRST_RATIO * _SMALLEST)
@@ -256,60 +239,10 @@ def _stiffest(scene: Scene) -> float:
     return float(relaxation_rate(scene, np.linspace(0, math.pi, 91), slip).max())
 
 
-def pendulum_time(scene: Scene, phi0: float, *precision: float) -> OwnTime:
-    """Return a time that passes as fast as time at `phi0` [rad], in which the load is a pendulum; see `own_time`."""
-    return _in_units_of(scene, float(scene.oscillator.inertia(phi0)), *precision)
-
-
-def even_at_most(scene: Scene) -> OwnTime:
-    """Return the same time in a unit in which no step is longer than a timestep."""
-    shape = scene.oscillator
-    return _in_units_of(scene, shape.base + shape.chord + shape.coupling)
-
-
-def _in_units_of(scene: Scene, inertia: float, *precision: float) -> OwnTime:
-    """Return the time whose pace is sqrt(J / `inertia`)."""
+def swing_law(scene: Scene) -> SwingLaw:
+    """Return the law of a scene's load, as `integrators` take it."""
     shape, arm = scene.oscillator, scene.load.moment / scene.effective_mass
-    uneven, turns = (shape.coupling, 1.0) if shape.coupling > 0 else (shape.chord, 0.5)
-    swing = shape.depth / inertia
-    law = shape.ramp / inertia, swing * math.sin(shape.bottom), -swing * math.cos(shape.bottom)
-    return own_time(shape.base / inertia, uneven / inertia, turns, *precision, share=arm, law=law)
-
-
-def _longest(scene: Scene, phi0: float, phi_dot0: float, duration: float, tolerance: float) -> tuple[float, float]:
-    """Return a timestep [s] with which runs of Gauss-Jackson of some `duration` [s] should keep a tolerance [rad].
-
-    The second number is the largest rate of the load in the time of its uneven steps [rad/s].
-
-    In the time of its uneven steps the load moves as a pendulum, whose inertia is that at the start. Without a slope
-    its motion is an elliptic function, the nearest pole of which is at an imaginary time: K'(k) over the rate of small
-    swings, where k^2 is the largest kinetic energy over that which turns the load over.
-    """
-    shape = scene.oscillator
-    slope, depth, bottom = shape.ramp, shape.depth, shape.bottom
-    inertia = shape.base + shape.chord * math.sin(phi0 / 2) ** 2 + shape.coupling * math.sin(phi0) ** 2
-    mean = math.sqrt(shape.base + (shape.chord + shape.coupling) / 2)
-    # Rest and crests are where V' = -slope + depth sin(phi - bottom) vanishes: the well around the start.
-    lean = math.asin(max(-1.0, min(1.0, slope / depth))) if depth > 0 else 0.0
-    well = bottom - lean + 2 * math.pi * round((phi0 - bottom + lean) / (2 * math.pi))
-    energy = inertia * phi_dot0**2 / 2 - slope * phi0 - depth * math.cos(phi0 - bottom)
-    crest, rest = well + math.copysign(math.pi, slope), well + 2 * lean
-    most = max(0.0, energy + slope * rest + depth * math.cos(rest - bottom))
-    over_crest = energy + slope * crest + depth * math.cos(crest - bottom)
-    if turns := over_crest > 0 or abs(slope) >= depth:
-        # It turns over and over, and a turn takes 2 pi mean(sqrt(J)) / sqrt(2 E), while E grows by 2 pi slope.
-        most = (math.sqrt(2 * (most + 2 * depth)) + abs(slope) * duration / mean) ** 2 / 2
-    if not depth > 0:
-        return duration / 8, math.sqrt(2 * most / inertia)  # as for any motion that hardly moves
-    one, modulus = 1.0, max(math.sqrt(most / (2 * depth)), 1e-3)  # smaller swings are as even
-    turned = math.sqrt(2 * most) * duration / mean if turns else 4 * modulus
-    while abs(one - modulus) > 1e-3 * one:  # their arithmetic-geometric mean is pi/2 over K'
-        one, modulus = (one + modulus) / 2, math.sqrt(one * modulus)
-    pole = math.pi / (2 * one) * math.sqrt(inertia / depth)
-    cycles = math.sqrt(depth) / mean * duration / (2 * math.pi)
-    slowed = max(1e-6, min(1.0, _GAP * abs(over_crest) / depth))
-    allowed = tolerance / _REFERENCE * max(1.0, turned) * slowed / max(0.5, cycles) ** _ADDED
-    return min(_SHARE * pole * allowed**_POWER, duration / 8), math.sqrt(2 * most / inertia)
+    return SwingLaw(shape.base, shape.chord, shape.coupling, shape.ramp, shape.depth, shape.bottom, arm)
 
 
 def _distance(angles: np.ndarray, coarse: np.ndarray, fine: np.ndarray, start: np.ndarray) -> float:

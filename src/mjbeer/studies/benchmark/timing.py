@@ -13,15 +13,17 @@ import numpy as np
 from rich.console import Console
 
 from mjbeer.exceptions import DivergenceError, MjbeerError
+from mjbeer.integrators import Method
 from mjbeer.integrators.dop853 import DOP853
-from mjbeer.integrators.gauss_jackson import GaussJackson
+from mjbeer.integrators.dynamics import Dynamics
+from mjbeer.integrators.gauss_jackson import GaussJackson, sundman_time
+from mjbeer.integrators.mujoco_steps import MuJoCoSteps
 from mjbeer.model.build import specify
 from mjbeer.model.joints import initial_state, to_coordinates
-from mjbeer.model.setting import INTEGRATORS, ROLLINGS, Setting, supported
+from mjbeer.model.setting import INTEGRATORS, OWN, ROLLINGS, Setting, supported
 from mjbeer.output.terminal import progress_bar
-from mjbeer.simulation.fixed_step import states_after
 from mjbeer.simulation.simulator import Simulator
-from mjbeer.simulation.tolerance import even_at_most
+from mjbeer.simulation.tolerance import swing_law
 from mjbeer.studies.benchmark import other_tools, points
 from mjbeer.studies.benchmark.other_tools import OTHER_TOOLS, Samples
 from mjbeer.studies.benchmark.points import CASES, Benchmark, Case, Curve, Point
@@ -130,34 +132,44 @@ def _set_up(case: Case, point: Point) -> tuple[Callable[[], Any], Callable[[Any]
     scene, times, value = case.scene, points.TIMES, point.value
     if point.model in OTHER_TOOLS:
         return OTHER_TOOLS[point.model].set_up(scene, case.phi0, 0.0, times, value), lambda found: found
-    own: DOP853 | GaussJackson | None = None
+    dynamics: Dynamics | None = None
     if point.model in points.USUAL:
         model = usual_model(point.model, scene)
         begin = initial_state(model, scene, case.phi0, 0.0)
-        steps = np.rint(times / value).astype(np.int64)
-        solve = partial(states_after, model, mujoco.MjData(model), begin, steps)
+        solve = partial(MuJoCoSteps(model, mujoco.MjData(model), [value], point.method).run, begin, times)
     else:
         given: dict[str, Any] = {"tolerance": value}
         if point.parameter == points.TIMESTEP:
             given = {"integrator": point.method, "timestep": value}
         simulator = Simulator(scene, replace(Setting(), rolling=point.model, **given))
         model, begin = simulator.model, simulator.initial_state(case.phi0, 0.0)
-        if point.method == "DOP853":
-            own = DOP853(model)
-            solve = partial(own.run, begin, times, value)
-        elif point.method == "GaussJackson":
-            own = GaussJackson(model)
-            solve = partial(own.run, begin, times, value, even_at_most(scene))
+        if point.method in OWN:
+            dynamics = Dynamics(model)
+            solve = partial(_counted, _own_method(point.method, dynamics, scene, value), dynamics, begin, times)
         else:
             solve = lambda: simulator.solve(begin, times).states  # noqa: E731
 
     def motion(states: np.ndarray) -> Samples:
-        found, count = to_coordinates(model, scene, states, times), own.evaluations if own else None
+        found, count = to_coordinates(model, scene, states, times), dynamics.evaluations if dynamics else None
         if point.method in INTEGRATORS:
             count = round(float(times[-1]) / value) * (4 if point.method == "RK4" else 1)
         return found.phi, found.u, count
 
     return solve, motion
+
+
+def _own_method(name: str, dynamics: Dynamics, scene: Scene, timestep: float) -> Method:
+    """Return one of mjbeer's own integrators with a fixed timestep [s]."""
+    if name == "DOP853":
+        return DOP853(dynamics, timestep)
+    law = swing_law(scene)
+    return GaussJackson(dynamics, timestep, sundman_time(law, law.largest_inertia()))
+
+
+def _counted(method: Method, dynamics: Dynamics, start: np.ndarray, times: np.ndarray) -> np.ndarray:
+    """Return the states of a run, whose evaluations alone `dynamics` has counted after it."""
+    dynamics.evaluations = 0
+    return method.run(start, times)
 
 
 def _seconds(solve: Callable[[], Any]) -> float:

@@ -21,14 +21,16 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from mjbeer.exceptions import DivergenceError
+from mjbeer.integrators import Method
 from mjbeer.integrators.dop853 import DOP853
+from mjbeer.integrators.dynamics import Dynamics
+from mjbeer.integrators.mujoco_steps import MuJoCoSteps
 from mjbeer.model.build import build, specify
 from mjbeer.model.joints import joint_addresses
 from mjbeer.model.setting import INTEGRATORS, Integrator
 from mjbeer.output.plots import COLOURS, chart, name_below
 from mjbeer.output.terminal import Table
 from mjbeer.paper.checks import Check, Result
-from mjbeer.simulation.fixed_step import states_after
 from mjbeer.studies import predictions
 from mjbeer.studies.predictions import ACCURACY, GROWTH, spring
 from mjbeer.studies.study import FAILED
@@ -152,9 +154,10 @@ class Swings:
         samples = np.arange(self._steps(timestep) + 1)
         try:
             if self._integrator == "DOP853":
-                states = DOP853(self._model).run(self._start, samples * timestep, timestep)
+                method: Method = DOP853(Dynamics(self._model), timestep)
             else:
-                states = states_after(self._model, mujoco.MjData(self._model), self._start, samples)
+                method = MuJoCoSteps(self._model, mujoco.MjData(self._model), [timestep], self._integrator)
+            states = method.run(self._start, samples * timestep)
         except DivergenceError:
             return EXPLODED
         return self._judge(states, timestep)
