@@ -16,7 +16,6 @@ from mjbeer.integrators.dynamics import Dynamics
 from mjbeer.integrators.gauss_jackson import (
     GaussJackson,
     SundmanTime,
-    SwingLaw,
     first_timestep,
     sundman_time,
 )
@@ -122,7 +121,7 @@ def test_the_time_in_a_step_is_known_to_the_precision(precision: float) -> None:
 @pytest.mark.parametrize("phi0", [0.1, 1.0, 3.0])
 @pytest.mark.parametrize("scene", [sliding(), frozen(0.1), pendulum(0.1, wheel_mass=0.01)])
 def test_the_first_timestep_suits_the_tolerance(scene: Scene, phi0: float) -> None:
-    """The error is between the tolerance and what a timestep 2.5 times too short, or 1.5 times too long, makes of it."""
+    """The error is the tolerance, but for a timestep that is up to 2.5 times too short or 1.5 times too long."""
     tolerance = 1e-8
     law = swing_law(scene)
     first = first_timestep(law, phi0, 0.0, duration=2.0, tolerance=tolerance)

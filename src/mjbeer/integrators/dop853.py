@@ -74,7 +74,7 @@ class _Control(NamedTuple):
 class _Work(NamedTuple):
     """The step that is being taken, and space to work in; the states have shape (nq + nv,)."""
 
-    state: np.ndarray  # at the begin of the step
+    state: np.ndarray  # at the start of the step
     end: np.ndarray  # the state at its end
     stages: np.ndarray  # derivatives at the stages, the begin's first
     output: np.ndarray  # coefficients of the continuous output
@@ -132,7 +132,8 @@ class DOP853:
         """
         size = len(start)
         samples = Steps(times, np.empty((len(times), size)))
-        samples.states[times == 0] = start
+        at_start = int(times[0] == 0)  # samples that are there already
+        samples.states[:at_start] = start
         slope = self._dynamics.derivative(start)
         work = _Work(
             state=start.copy(),
@@ -145,7 +146,7 @@ class DOP853:
         place = _Place(
             time=0.0,
             step=self._timestep or self._first_step(start, slope, times[-1]),
-            sample=int(times[0] == 0),
+            sample=at_start,
             steps=0,
             error=1.0,
             longest=0.0,
@@ -176,9 +177,9 @@ class DOP853:
 def _advance(dynamics, tableau, control, work, samples, ends, place):
     """Take up to a block of steps, and return the `Block`.
 
-    `dynamics` is a `ForwardDynamics`. The `tableau` is an argument, as a compiler takes seconds to unroll all loops over
-    numbers that it knows. `work` comes with the state and the derivative at the begin of the first step. The rows of
-    `samples` whose times are passed are filled in, and the ends of steps are written to `ends`, if that has room.
+    `dynamics` is a `ForwardDynamics`. The `tableau` is an argument, as a compiler takes seconds to unroll all loops
+    over numbers that it knows. `work` comes with the state and the derivative at the start of the first step. The rows
+    of `samples` whose times are passed are filled in, and the ends of steps are written to `ends`, if that has room.
     """
     optimize_for_size()
     state = work.state

@@ -6,8 +6,8 @@ from typing import NamedTuple
 from mjbeer.integrators.gauss_jackson.swing_law import SwingLaw
 
 _SHARE = 0.34
-"""Timestep over the distance of the nearest pole for which the error in a cycle would reach 1 rad, by its 14th power;
-fitted to random motions."""
+"""The timestep, as a share of the distance of the nearest pole, at which the error in a cycle would reach 1 rad if it
+grew as the timestep's 14th power all the way; fitted to random motions."""
 _ORDER = 14
 """Power of the timestep with which the error in a cycle grows."""
 _LOOSEST = 1e-5
@@ -28,11 +28,10 @@ class FirstTimestep(NamedTuple):
 def first_timestep(law: SwingLaw, phi0: float, phi_dot0: float, duration: float, tolerance: float) -> FirstTimestep:
     """Return a timestep for runs of some `duration` [s] that should err by a `tolerance` [rad].
 
-    It is one of the Sundman time that passes as fast as t at `phi0` [rad], where the rate is `phi_dot0` [rad/s]. In that
-    time phi is a pendulum, and its motion an elliptic function. The radius of convergence of its Taylor series, which
-    limits the steps of every method, is the distance of the nearest pole. Without a slope this is the imaginary time
-    K'(k)/omega: omega is the rate of small swings, and k^2 the largest kinetic energy over that which turns the load
-    over.
+    The motion starts at `phi0` [rad] with the rate `phi_dot0` [rad/s], where Sundman time passes as fast as t. In that
+    time phi is a pendulum, and its motion an elliptic function. Its Taylor series converges as far as its nearest pole,
+    and this limits the steps of every method. Without a slope the pole lies at the imaginary time K'(k)/omega. Here
+    omega is the rate of small swings, and k^2 the largest kinetic energy divided by that which turns the load over.
     """
     inertia = law.inertia(phi0)
     kinetic = _largest_kinetic_energy(law, phi0, phi_dot0, duration)

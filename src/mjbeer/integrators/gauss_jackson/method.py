@@ -62,26 +62,14 @@ _NEXT = row_of(-1)
 _LAST = row_of(0)
 
 
-class _Sum(NamedTuple):
-    """A sum of many terms."""
+class _Totals(NamedTuple):
+    """Sums of many terms: each is an array of the sum and of what rounding has added to it so far."""
 
-    value: float
-    lost: float  # what rounding has added to it so far
-
-
-class _Sums(NamedTuple):
-    """Both sums of the accelerations of phi, in units of the step."""
-
-    first: _Sum
-    second: _Sum
-
-
-class _Steady(NamedTuple):
-    """The time [s], and the slide less arm sin(phi), whose acceleration is steady."""
-
-    time: _Sum
-    position: _Sum  # [m]
-    velocity: _Sum  # [m/s]
+    first: np.ndarray  # the first sum of the accelerations of phi, in units of the step
+    second: np.ndarray  # the second
+    time: np.ndarray  # at the last state that was read off [s]
+    position: np.ndarray  # of the slide less arm sin(phi), whose acceleration is steady, at that time [m]
+    velocity: np.ndarray  # of the same [m/s]
 
 
 class _Place(NamedTuple):
@@ -90,8 +78,6 @@ class _Place(NamedTuple):
     back: int  # how many steps before the last acceleration the last state was read off
     sample: int  # index of the next sample
     node: Node  # the last state that was read off
-    steady: _Steady  # at that node
-    sums: _Sums
 
 
 class GaussJackson:
@@ -125,44 +111,46 @@ class GaussJackson:
         dynamics = self._dynamics
         sundman = self._sundman_time
         samples = Steps(times, np.empty((len(times), len(start))))
-        samples.states[times == 0] = start
+        at_start = int(times[0] == 0)  # samples that are there already
+        samples.states[:at_start] = start
         dynamics.data.qpos[:] = 0.0
         dynamics.data.qvel[:] = 0.0
         history = History(np.zeros(COUNT + BLOCK), np.zeros(COUNT + BLOCK))
         coefficients = np.empty(COUNT + 2)
+        phi = float(start[len(start) // 2 - 1])
+        pace = dt_ds.py_func(sundman, phi)
         dynamics.run_blocks(
             self.name,
             _advance,
-            (dynamics.kernel_view, sundman, self._timestep, history, coefficients, samples),
-            _first_place(start, sundman, int(times[0] == 0)),
+            (
+                dynamics.kernel_view,
+                sundman,
+                self._timestep,
+                history,
+                _totals_at(start, sundman.arm),
+                coefficients,
+                samples,
+            ),
+            _Place(MIDDLE, at_start, Node(phi, float(start[-1]) * pace, pace)),
             room_for_ends(start, BLOCK + COUNT if observer else 0),
             observer,
         )
         return samples.states
 
 
-def _first_place(start: np.ndarray, sundman: SundmanTime, sample: int) -> _Place:
-    """Return the place at the start of a run."""
+def _totals_at(start: np.ndarray, arm: float) -> _Totals:
+    """Return the totals at the start of a run; the first steps will give both sums of accelerations."""
+    totals = _Totals(*np.zeros((5, 2)))
     joints = len(start) // 2
-    phi = float(start[joints - 1])
-    phi_dot = float(start[-1])
-    pace = dt_ds.py_func(sundman, phi)
-    position = 0.0
-    velocity = 0.0
     if joints > 1:
-        position = float(start[0]) - sundman.arm * math.sin(phi)
-        velocity = float(start[joints]) - sundman.arm * math.cos(phi) * phi_dot
-    return _Place(
-        back=MIDDLE,
-        sample=sample,
-        node=Node(phi, phi_dot * pace, pace),
-        steady=_Steady(_Sum(0.0, 0.0), _Sum(position, 0.0), _Sum(velocity, 0.0)),
-        sums=_Sums(_Sum(0.0, 0.0), _Sum(0.0, 0.0)),
-    )
+        phi = float(start[joints - 1])
+        totals.position[0] = float(start[0]) - arm * math.sin(phi)
+        totals.velocity[0] = float(start[joints]) - arm * math.cos(phi) * float(start[-1])
+    return totals
 
 
 @kernel
-def _advance(dynamics, sundman, timestep, history, coefficients, samples, ends, place):
+def _advance(dynamics, sundman, timestep, history, totals, coefficients, samples, ends, place):
     """Take up to a block of steps, and return the `Block`.
 
     `dynamics` is a `ForwardDynamics`. `history` has the last accelerations first, and room for those of the block.
@@ -173,15 +161,14 @@ def _advance(dynamics, sundman, timestep, history, coefficients, samples, ends, 
     back = place.back
     sample = place.sample
     node = place.node
-    steady = place.steady
-    sums = place.sums
     status = MORE
     evaluations = 0
     row = 0
     end = history.phi.size - BLOCK  # `COUNT`: the accelerations before this index are there
     if back == MIDDLE:  # this is the first block
         begin = find_first_steps(dynamics, sundman, node, timestep, history)
-        sums = _Sums(_Sum(begin.first, 0.0), _Sum(begin.second, 0.0))
+        totals.first[0] = begin.first
+        totals.second[0] = begin.second
         evaluations = begin.evaluations
         row = 1
         if evaluations == 0:
@@ -192,49 +179,48 @@ def _advance(dynamics, sundman, timestep, history, coefficients, samples, ends, 
         if back > LAG:  # the first steps are there already
             back -= 1
         else:
-            sums = _take_step(dynamics, sundman, timestep, history, end, sums)
+            _take_step(dynamics, sundman, timestep, history, totals, end)
             end += 1
             evaluations += 1
-        first = sums.first.value
-        second = sums.second.value
-        curve = StepCurve(coefficients, first, second, timestep, back + 1.0)
+        curve = StepCurve(coefficients, totals.first[0], totals.second[0], timestep, back + 1)
         after = end_node(sundman, curve, history.phi, end)
         if not (abs(after.phi) < LARGEST and timestep * abs(after.rate) < LARGEST_TURN):
             status = NOT_FINITE  # it may also be NaN
             break
         span = whole_duration(sundman, curve, history.phi, end)
         acceleration = _mean_steady(history, end - 1 - back, node, after)
-        passed = (steady.time.value + span) * (1 + 1e-14)  # a sample may be so much after the step
+        passed = (totals.time[0] + span) * (1 + 1e-14)  # a sample may be so much after the step
         if samples.times[sample] <= passed:
             fit(curve, history.phi, end)
         while sample < samples.times.size and samples.times[sample] <= passed:
-            since = samples.times[sample] - steady.time.value
+            since = samples.times[sample] - totals.time[0]
             there = find(sundman, curve, node, after, span, since)
-            _write(sundman, there, steady, acceleration, since, samples.states, sample)
+            _write(sundman, there, totals, acceleration, since, samples.states, sample)
             sample += 1
             if sample == samples.times.size:  # the run ends within this step
                 status = DONE
                 after = there
                 span = since
         if row < ends.times.size:
-            ends.times[row] = steady.time.value + span
-            _write(sundman, after, steady, acceleration, span, ends.states, row)
+            ends.times[row] = totals.time[0] + span
+            _write(sundman, after, totals, acceleration, span, ends.states, row)
             row += 1
-        steady = _move(steady, acceleration, span)
+        _add(totals.time, span)
+        _add(totals.position, span * (totals.velocity[0] + span * acceleration / 2))
+        _add(totals.velocity, span * acceleration)
         node = after
     for k in range(COUNT):
         history.phi[k] = history.phi[end - COUNT + k]
         history.steady[k] = history.steady[end - COUNT + k]
-    place = _Place(back, sample, node, steady, sums)
-    return Block(status, steady.time.value, evaluations, row, place)
+    return Block(status, totals.time[0], evaluations, row, _Place(back, sample, node))
 
 
 @inlined
-def _take_step(dynamics, sundman, timestep, history, end, sums):
-    """Predict, evaluate and correct the next step; write its accelerations at index `end`, and return the new sums."""
+def _take_step(dynamics, sundman, timestep, history, totals, end):
+    """Predict, evaluate and correct the next step: write its accelerations at index `end`, and add them up."""
     square = timestep * timestep
-    first = sums.first.value
-    second = sums.second.value
+    first = totals.first[0]
+    second = totals.second[0]
     predicted = square * (second + weighted(POSITION_WEIGHTS, _NEXT, history.phi, end))
     rate = timestep * (first + weighted(VELOCITY_WEIGHTS, _NEXT, history.phi, end))
     both = accelerations(dynamics, sundman, predicted, rate)
@@ -245,8 +231,8 @@ def _take_step(dynamics, sundman, timestep, history, end, sums):
     slope = law.sine * math.cos(predicted) - law.cosine * math.sin(predicted)
     acceleration = both.phi + slope * (corrected - predicted)
     history.phi[end] = acceleration
-    first_sum = _add(sums.first, acceleration)
-    return _Sums(first_sum, _add(sums.second, first_sum.value))
+    _add(totals.first, acceleration)
+    _add(totals.second, totals.first[0])
 
 
 @inlined
@@ -260,35 +246,25 @@ def _mean_steady(history, index, before, after):
 
 
 @compiled
-def _write(sundman, node, steady, acceleration, since, states, row):
-    """Write the state at a node to a row of `states`, `since` [s] after the begin of its step, where `steady` holds."""
+def _write(sundman, node, totals, acceleration, since, states, row):
+    """Write the state at a node to a row of `states`, `since` [s] after the begin of its step, where `totals` hold."""
     optimize_for_size()
     last = states.shape[1] // 2 - 1
     phi_dot = node.rate / node.dt_ds
     states[row, last] = node.phi
     states[row, 2 * last + 1] = phi_dot
     if last > 0:
-        velocity = steady.velocity.value
+        velocity = totals.velocity[0]
         moved = since * (velocity + since * acceleration / 2)
         swinging = sundman.arm * math.cos(node.phi) * phi_dot
-        states[row, 0] = steady.position.value + moved + sundman.arm * math.sin(node.phi)
+        states[row, 0] = totals.position[0] + moved + sundman.arm * math.sin(node.phi)
         states[row, 1 + last] = velocity + since * acceleration + swinging
 
 
 @inlined
-def _move(steady, acceleration, span):
-    """Return the `_Steady` after a step of some `span` [s]."""
-    velocity = steady.velocity.value
-    return _Steady(
-        _add(steady.time, span),
-        _add(steady.position, span * (velocity + span * acceleration / 2)),
-        _add(steady.velocity, span * acceleration),
-    )
-
-
-@inlined
 def _add(total, term):
-    """Return a sum with a further term, less what rounding has added to it (Kahan's sum)."""
-    term -= total.lost
-    value = total.value + term
-    return _Sum(value, (value - total.value) - term)
+    """Add a term to one of the totals, less what rounding has added to that before (Kahan's sum)."""
+    value = total[0]
+    term -= total[1]
+    total[0] = value + term
+    total[1] = (total[0] - value) - term

@@ -43,13 +43,13 @@ class StepCurve(NamedTuple):
     first: float  # the first sum
     second: float  # the second sum
     timestep: float  # in Sundman time [s]
-    back: float  # how many steps before the last acceleration the step begins
+    back: int  # how many steps before the last acceleration the step begins
 
 
 @inlined
 def end_node(sundman, curve, accelerations, end):
     """Return the node at the end of the step, by the accelerations before index `end`."""
-    row = int(curve.back)  # that of one step less back, as `row_of` says
+    row = curve.back  # that of one step less back, as `row_of` says
     place = curve.second - curve.back * curve.first
     place += weighted(POSITION_WEIGHTS, row, accelerations, end)
     rate = curve.first + weighted(VELOCITY_WEIGHTS, row, accelerations, end)
@@ -61,7 +61,7 @@ def end_node(sundman, curve, accelerations, end):
 def whole_duration(sundman, curve, accelerations, end):
     """Return the time [s] that passes in the step, by the accelerations before index `end`."""
     count = sundman.points.size
-    first_row = (int(curve.back) - 1 - LAG) * count
+    first_row = (curve.back - 1 - LAG) * count
     mean = 0.0
     for point in range(count):
         place = curve.second - (1 + curve.back - sundman.points[point]) * curve.first

@@ -5,11 +5,13 @@ from typing import NamedTuple
 
 
 class SwingLaw(NamedTuple):
-    """The law 1/2 J(phi) phi_dot^2 + V(phi) = E, which phi nearly obeys, with
+    """The law that phi nearly obeys: an oscillator whose inertia J depends on phi, in a potential V.
 
-        J = base + chord sin^2(phi/2) + coupling sin^2(phi)     and     V = -ramp phi - depth cos(phi - bottom).
+        J phi_dot^2 / 2 + V = E,
+        J = base + chord sin^2(phi/2) + coupling sin^2(phi),
+        V = -ramp phi - depth cos(phi - bottom).
 
-    One of `chord` and `coupling` is 0. If the model has a slide, the slide less `arm` sin(phi) is evenly accelerated.
+    One of `chord` and `coupling` is 0. If the model has a slide, the slide less arm sin(phi) is evenly accelerated.
     """
 
     base: float  # [kg m^2]

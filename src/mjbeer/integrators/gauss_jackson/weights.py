@@ -1,9 +1,10 @@
 """The weights with which Gauss-Jackson adds up accelerations, by rational arithmetic.
 
-With the backward difference z, z a_n = a_n - a_(n-1), and a step h, the time derivative is -ln(1 - z)/h. So the velocity
-is h/(-ln(1 - z)), and the position h^2/ln(1 - z)^2, times the acceleration. Their leading terms, 1/z and 1/z^2, are the
-first and the second sum of all accelerations; the rest are differences of the last ones, and so weights for them. A
-factor (1 - z)^back gives the value so many steps before the last acceleration; a `back` of -1 predicts the next step.
+Let z be the backward difference, z a_n = a_n - a_(n-1), and h the step. By Taylor's theorem the time derivative is then
+-ln(1 - z)/h. So the velocity is h/(-ln(1 - z)), and the position h^2/ln(1 - z)^2, times the acceleration. As series in
+z they begin with 1/z and 1/z^2, which are the first and the second sum of all accelerations; the other terms are
+differences of the last accelerations, and so weights for these. A factor (1 - z)^back gives the value that many steps
+before the last acceleration; a `back` of -1 predicts the next step.
 
 In units of the step, with both sums up to the last acceleration, and the weights of that `back`,
 
