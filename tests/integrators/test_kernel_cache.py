@@ -21,14 +21,20 @@ pytestmark = pytest.mark.slow
 
 PACKAGE = pathlib.Path(mjbeer.__file__).parent
 KERNEL = """
-from mjbeer.integrators.dynamics import compiled
-from mjbeer.integrators.uneven_time import kahan_add
+from mjbeer.integrators.compiling import kernel
+from mjbeer.integrators.gauss_jackson.method import _add
 
-@compiled
-def add(first, second):
-    return kahan_add((first, 0.0), second)[0]
+@kernel
+def add(total, term):
+    _add(total, term)
+    return total[0]
 """
-ADD = "from mjbeer.simulation.kernel import add; print(add(1.0, 2.0), *add.stats.cache_hits.values())"
+METHOD = pathlib.Path("integrators/gauss_jackson/method.py")
+ADD = """
+import numpy as np
+from mjbeer.simulation.kernel import add
+print(add(np.array([1.0, 0.0]), 2.0), *add.stats.cache_hits.values())
+"""
 
 
 @pytest.fixture
@@ -56,7 +62,7 @@ def change(path: pathlib.Path, old: str, new: str) -> None:
 def test_a_change_in_the_file_of_a_callee_takes_effect(package: pathlib.Path) -> None:
     assert in_a_new_process(ADD) == "3.0"
     assert in_a_new_process(ADD) == "3.0 1", "the kernel was not loaded from the cache"
-    change(package / "integrators" / "uneven_time.py", "new = total[0] + term\n", "new = total[0] + 10 * term\n")
+    change(package / METHOD, "total[0] = value + term\n", "total[0] = value + 10 * term\n")
     assert in_a_new_process(ADD) == "21.0"
 
 
@@ -64,7 +70,7 @@ def test_folders_of_other_sources_go_when_they_are_not_used_any_more(package: pa
     where = "from mjbeer.integrators.kernel_cache import FOLDER; print(FOLDER)"
     first = pathlib.Path(in_a_new_process(where))
     assert first.is_relative_to(package)
-    change(package / "integrators" / "uneven_time.py", "LAG = 2\n", "LAG = 3\n")
+    change(package / METHOD, "BLOCK = 1024\n", "BLOCK = 512\n")
     second = pathlib.Path(in_a_new_process(where))
     assert second != first
     assert first.exists(), "a process that has begun before the change may still write there"
@@ -76,36 +82,42 @@ def test_folders_of_other_sources_go_when_they_are_not_used_any_more(package: pa
     assert not first.exists()
 
 
-def kernels() -> list[tuple[pathlib.Path, str, Dispatcher]]:
-    """All compiled functions, each with its file and its name."""
-    found = []
-    for path in (*PACKAGE.glob("integrators/*.py"), PACKAGE / "simulation" / "smooth_recorder.py"):
-        module = importlib.import_module(".".join(("mjbeer", *path.relative_to(PACKAGE).with_suffix("").parts)))
-        for name, value in vars(module).items():
-            if isinstance(value, Dispatcher) and value.py_func.__module__ == module.__name__:
-                found.append((path, name, value))
-    return found
+def compiled_functions() -> dict[str, Dispatcher]:
+    """All functions that numba compiles in files that import `compiling`, by file and name."""
+    functions = {}
+    for path in sorted(PACKAGE.rglob("*.py")):
+        if "from mjbeer.integrators.compiling import" in path.read_text():
+            file = path.relative_to(PACKAGE).with_suffix("")
+            module = importlib.import_module(".".join(("mjbeer", *file.parts)))
+            for name, value in vars(module).items():
+                if isinstance(value, Dispatcher) and value.py_func.__module__ == module.__name__:
+                    functions[f"{file}.{name}"] = value
+    return functions
 
 
-def test_what_kernels_take_from_other_files_is_in_the_hash() -> None:
-    """Functions that are compiled into them, and constants."""
+def test_all_that_is_compiled_and_what_it_takes_from_other_files_is_in_the_hash() -> None:
+    """Functions and constants."""
     taken = set()
-    for path, _, kernel in kernels():
-        names = set(kernel.py_func.__code__.co_names)
+    for function in compiled_functions().values():
+        path = pathlib.Path(function.py_func.__code__.co_filename)
+        taken.add(path)
+        names = set(function.py_func.__code__.co_names)
         for node in ast.walk(ast.parse(path.read_text())):
-            if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("mjbeer."):
-                module = importlib.import_module(str(node.module))
-                if any(alias.name in names for alias in node.names):
-                    taken.add(pathlib.Path(str(module.__file__)))
-    assert PACKAGE / "integrators" / "uneven_time.py" in taken
-    assert taken <= set(kernel_cache.SOURCES)
+            if isinstance(node, ast.ImportFrom) and any(alias.name in names for alias in node.names):
+                taken.add(pathlib.Path(str(importlib.import_module(str(node.module)).__file__)))
+    assert PACKAGE / "integrators" / "gauss_jackson" / "weights.py" in taken
+    assert PACKAGE / "model" / "mujoco_library.py" in taken
+    ours = {path for path in taken if path.is_relative_to(PACKAGE)}
+    assert ours <= set(kernel_cache.SOURCES)
 
 
 def test_every_kernel_is_kept_there_and_no_function_of_a_user() -> None:
-    kept = {f"{path.stem}.{name}": kernel.stats.cache_path for path, name, kernel in kernels()}
-    in_a_folder = {name: pathlib.Path(folder) for name, folder in kept.items() if folder is not None}
-    assert set(in_a_folder) == {"dop853._advance", "gauss_jackson._advance", "smooth_recorder._update"}
-    assert all(folder.is_relative_to(kernel_cache.FOLDER) for folder in in_a_folder.values())
+    kept = {}
+    for name, function in compiled_functions().items():
+        if function.stats.cache_path is not None:
+            kept[name] = pathlib.Path(function.stats.cache_path)
+    assert {"integrators/dop853._advance", "integrators/gauss_jackson/method._advance"} <= set(kept)
+    assert all(folder.is_relative_to(kernel_cache.FOLDER) for folder in kept.values())
     assert os.environ.get("NUMBA_CACHE_DIR", "") == config.CACHE_DIR
-    own = njit(cache=True)(in_a_new_process).stats.cache_path
-    assert not pathlib.Path(own).is_relative_to(kernel_cache.FOLDER)
+    users = njit(cache=True)(in_a_new_process).stats.cache_path
+    assert not pathlib.Path(users).is_relative_to(kernel_cache.FOLDER)

@@ -306,7 +306,7 @@ def test_a_rotation_is_stepped_through_again_with_shorter_steps(monkeypatch: pyt
 
     def noted(method: DOP853, *arguments: object) -> np.ndarray:
         found = run(method, *arguments)
-        runs.append(method.longest)
+        runs.append(method.longest_step_taken)
         return found
 
     monkeypatch.setattr(DOP853, "run", noted)

@@ -6,282 +6,384 @@ G. Wanner, Solving Ordinary Differential Equations I, section II.10 (coefficient
 
 import math
 import pathlib
+from typing import NamedTuple
 
-import mujoco
 import numpy as np
 
 from mjbeer.integrators import Observer
+from mjbeer.integrators.compiling import compiled, inlined, kernel, optimize_for_size
 from mjbeer.integrators.dynamics import (
-    BLOCK_END,
     DONE,
+    MORE,
     NOT_FINITE,
-    TOO_SMALL,
+    STEP_TOO_SMALL,
+    Block,
     Dynamics,
-    compiled,
+    Steps,
     copy,
-    derivative,
-    inline,
-    inner,
-    run_blocks,
-    small,
+    room_for_ends,
+    write_derivative,
 )
 from mjbeer.model.mujoco_library import LARGEST, quiet
 
 # SciPy has these numbers too, but to import scipy.integrate takes longer than all other imports together.
 _TABLEAU = np.loadtxt(pathlib.Path(__file__).with_suffix(".txt"))
 _END = 12
-"""Index of the end of the step among the stages: twelve are before it, and three for the continuous output after."""
-_ERRORS, _OUTPUT = 16, 18
-"""Rows of the tableau after those of the stages: of the two error estimates, and of the continuous output."""
-_CAUTION, _SHRINK, _GROW = 0.9, 0.2, 10.0  # step-size control, as in the reference
-_MEMORY = 0.04  # beta of the reference, by which the error of the step before counts: saves two of three rejected steps
-_LEAST = 1e-4  # smallest error of the step before that counts
-_BLOCK = 20_000  # steps between two returns to Python, so that a long run can be interrupted
-_HALVINGS = 30  # of a step in which a corner is looked for: to 1e-9 of it
-_BESIDE = 1e-6
-"""Share of a step that a corner may be from its ends. A torque with the square of the rate is then 1e-12 off there."""
+"""Index of the stage at the end of the step: twelve are before it, and three for the continuous output after it."""
+_STAGES = 16
+_THIRD_ORDER_ERROR = 16
+"""Row of the tableau with the error by the embedded formula of third order."""
+_FIFTH_ORDER_ERROR = 17
+_OUTPUT = 18
+"""First row of the tableau for the continuous output."""
+_COEFFICIENTS = 7
+"""Number of coefficients of the continuous output, for each component of the state."""
+
+_CAUTION = 0.9
+"""The next step over the one whose error would just be tolerated; this and the next three as in the reference."""
+_SHRINK = 0.2
+"""Least ratio of a step to the one before."""
+_GROW = 10.0
+"""Largest ratio of a step to the one before."""
+_MEMORY = 0.04
+"""Power (beta) of the error of the step before in the next one: it saves two of three rejected steps."""
+_LEAST_ERROR = 1e-4
+"""Smallest error of the step before that counts."""
+_SHORTEST = 4e-16
+"""Shortest step over the time that has passed: with a shorter one time stands still."""
+_BLOCK = 20_000
+"""Steps between two returns to Python, so that a long run can be interrupted."""
+_HALVINGS = 30
+"""Halvings of a step in which a corner is looked for: to 1e-9 of it."""
+_AT_AN_END = 1e-6
+"""Share of a step within which a corner is at its end. A torque with the square of the rate is then 1e-12 off there."""
 _ROUNDING = 32 * float(np.finfo(float).eps)
-"""Size of a sum of rates that may be the rounding of its terms, over these."""
+"""Size of a sum of rates that may be the rounding of its terms, over the sum of their sizes."""
+
+
+class _Control(NamedTuple):
+    """How steps are chosen."""
+
+    fixed: bool  # whether all steps are equal; if so, the rest does not count
+    tolerance: float  # largest error of a step, over `scale` + |state|
+    scale: np.ndarray  # shape (nq + nv,)
+    longest: float  # [s]
+    corners: np.ndarray  # rates at whose zeros steps end, as weights of the state's components
+
+
+class _Work(NamedTuple):
+    """The step that is being taken, and space to work in; the states have shape (nq + nv,)."""
+
+    state: np.ndarray  # at the start of the step
+    end: np.ndarray  # the state at its end
+    stages: np.ndarray  # derivatives at the stages, the begin's first
+    output: np.ndarray  # coefficients of the continuous output
+    spare: np.ndarray  # a state in between
+
+
+class _Place(NamedTuple):
+    """Where a run is between two blocks."""
+
+    time: float  # [s]
+    step: float  # length of the next step [s]
+    sample: int  # index of the next sample
+    steps: int  # taken so far
+    error: float  # of the last step, over the tolerated one
+    longest: float  # step so far [s]
 
 
 class DOP853:
-    """The DOP853 method around the forward dynamics of a model of slides and hinges, set up once and run often.
+    """The DOP853 method around the forward dynamics of a model of slides and hinges.
+
+    With a `timestep` [s] the step is fixed. Without it each step keeps its local error below `local_tolerance` times
+    (`scale` + |state|), with a `scale` of shape (nq + nv,), 1 by default, and lasts no longer than `longest_step` [s].
 
     A damping with the square of a rate, v |v|, has a corner where that rate passes zero. Steps of variable length end
     there, as the method's order holds on either side only.
     """
 
-    def __init__(self, model: mujoco.MjModel, dynamics: Dynamics | None = None) -> None:
-        self._size, self._dynamics = model.nq + model.nv, dynamics or Dynamics(model)
-        self._corners = _corners(model)
-        self.evaluations = 0
-        """Number of evaluations of the forward dynamics in the last run."""
-        self.longest = 0.0
+    def __init__(
+        self,
+        dynamics: Dynamics,
+        timestep: float | None = None,
+        local_tolerance: float = 1e-10,
+        scale: np.ndarray | None = None,
+        longest_step: float = math.inf,
+    ) -> None:
+        self.name = "DOP853"
+        self._dynamics = dynamics
+        self._timestep = timestep
+        self._control = _Control(
+            fixed=timestep is not None,
+            tolerance=local_tolerance,
+            scale=np.ones(dynamics.model.nq + dynamics.model.nv) if scale is None else scale,
+            longest=longest_step,
+            corners=dynamics.corners,
+        )
+        self.longest_step_taken = 0.0
         """Longest step of the last run [s]."""
 
     @quiet()
-    def run(
-        self,
-        start: np.ndarray,
-        times: np.ndarray,
-        timestep: float | None = None,
-        tolerance: float = 1e-10,
-        scale: np.ndarray | None = None,
-        limit: float = math.inf,
-        longest: float = math.inf,
-        observer: Observer | None = None,
-    ) -> np.ndarray:
+    def run(self, start: np.ndarray, times: np.ndarray, observer: Observer | None = None) -> np.ndarray:
         """Return the states at increasing `times` [s], shape (samples, nq + nv), of the motion from `start` at time 0.
 
-        With a `timestep` [s] the step is fixed. Without it each step keeps its local error below `tolerance` times
-        (`scale` + |state|), with `scale` of shape (nq + nv,), and lasts no longer than `longest` [s]. The run is given
-        up after `limit` evaluations.
-
         Raises:
-          DivergenceError: if the motion stops being finite, no step is small enough, or the limit is reached.
+          DivergenceError: if the motion stops being finite, no step is small enough, or there are too many evaluations.
         """
-        scale, slope = np.ones(self._size) if scale is None else scale, self._dynamics.rates(start)
-        pace = float(np.abs(slope / (scale + np.abs(start))).max())
-        # It depends on the tolerance, as two runs that are compared must not have the same steps. NaN stays NaN.
-        step = timestep or min(tolerance ** (1 / 8) / max(pace, 1 / times[-1] if times[-1] else 1.0), longest)
-        samples, stages, work = (np.zeros((rows, self._size)) for rows in (len(times), _ERRORS, 10))
-        stages[0], work[0], sample = slope, start, int(times[0] == 0)
-        samples[:sample] = start
-        size = _BLOCK + 1 if observer else 0
-        kept = np.zeros(size), np.empty((size, self._size))
-        kept[1][:1] = start
-        control = timestep is not None, tolerance, scale, longest, self._corners
-        fixed = *self._dynamics.kernel, _TABLEAU, *work[:3], stages, work[3:], times, samples, control, kept
-        place = 0.0, step, sample, 0, 1.0, 0.0
-        evaluations, place = run_blocks("DOP853", _advance, fixed, place, limit, observer)
-        self.evaluations, self.longest = evaluations + 1, place[-1]
-        return samples
+        size = len(start)
+        samples = Steps(times, np.empty((len(times), size)))
+        at_start = int(times[0] == 0)  # samples that are there already
+        samples.states[:at_start] = start
+        slope = self._dynamics.derivative(start)
+        work = _Work(
+            state=start.copy(),
+            end=np.zeros(size),
+            stages=np.zeros((_STAGES, size)),
+            output=np.zeros((_COEFFICIENTS, size)),
+            spare=np.zeros(size),
+        )
+        work.stages[0] = slope
+        place = _Place(
+            time=0.0,
+            step=self._timestep or self._first_step(start, slope, times[-1]),
+            sample=at_start,
+            steps=0,
+            error=1.0,
+            longest=0.0,
+        )
+        place = self._dynamics.run_blocks(
+            self.name,
+            _advance,
+            (self._dynamics.kernel_view, _TABLEAU, self._control, work, samples),
+            place,
+            room_for_ends(start, _BLOCK + 1 if observer else 0),
+            observer,
+        )
+        self.longest_step_taken = place.longest
+        return samples.states
+
+    def _first_step(self, start: np.ndarray, slope: np.ndarray, duration: float) -> float:
+        """Return the first step [s] of variable length: the state changes little in it.
+
+        It depends on the tolerance, as two runs that are compared must not have the same steps.
+        """
+        control = self._control
+        rate = float(np.abs(slope / (control.scale + np.abs(start))).max())  # NaN stays NaN
+        slowest = 1 / duration if duration else 1.0
+        return min(control.tolerance ** (1 / 8) / max(rate, slowest), control.longest)
 
 
-def _corners(model: mujoco.MjModel) -> np.ndarray:
-    """Return the sums of the state whose squares damp it, each with its sign, as rows of shape (nq + nv,).
+@kernel
+def _advance(dynamics, tableau, control, work, samples, ends, place):
+    """Take up to a block of steps, and return the `Block`.
 
-    They are the rates of joints, and of tendons that are sums of joints.
+    `dynamics` is a `ForwardDynamics`. The `tableau` is an argument, as a compiler takes seconds to unroll all loops
+    over numbers that it knows. `work` comes with the state and the derivative at the start of the first step. The rows
+    of `samples` whose times are passed are filled in, and the ends of steps are written to `ends`, if that has room.
     """
-    rows = [*np.eye(model.nv)[model.dof_dampingpoly[:, 0] > 0]]
-    for tendon in np.flatnonzero(model.tendon_dampingpoly[:, 0] > 0):
-        parts = slice(model.tendon_adr[tendon], model.tendon_adr[tendon] + model.tendon_num[tendon])
-        row = np.zeros(model.nv)
-        row[model.jnt_dofadr[model.wrap_objid[parts]]] = model.wrap_prm[parts]
-        rows.append(row)
-    return np.pad(np.reshape(rows, (len(rows), model.nv)), ((0, 0), (model.nq, 0)))
-
-
-@inline
-def _evaluate(pointers, views, tableau, state, step, stage, stages, out):
-    """Evaluate the derivative at a `stage` of a step from `state`, and leave the state there in `out`."""
-    for i in range(out.size):
-        out[i] = 0.0
-    for j in range(stage):  # stage by stage, so that additions can overlap
-        weight = tableau[stage, j]
-        if weight != 0.0:
-            for i in range(out.size):
-                out[i] += weight * stages[j, i]
-    for i in range(out.size):
-        out[i] = state[i] + step * out[i]
-    derivative(pointers, views, out, stages[stage])
-
-
-@compiled
-def _advance(pointers, views, tableau, state, new, work, stages, output, times, samples, control, kept, place):
-    """Take up to a block of steps, and return the status, the new place and the numbers of evaluations and rows kept.
-
-    `pointers` and `views` are those of `derivative`. The `tableau` is an argument, as a compiler takes seconds to
-    unroll all loops over numbers that it knows. `state` is moved on. `stages` come with the derivative there in their
-    first row; `new`, `work` and `output` are space to work in. The rows of `samples` whose `times` [s] are passed are
-    filled in.
-
-    `control` says whether the step is fixed, and has the tolerance, scale, longest step and corners of a variable one.
-    `place` is the time, the step, the next sample, the number of steps, the error of the last one and the longest one.
-    `kept` takes times and states at the ends of steps, after the start in the first block, or has no room.
-    """
-    small()
-    time, step, sample, steps, before, reached = place
-    fixed, tolerance, scale, longest, corners = control
-    kept_times, kept_states = kept
-    status, evaluations, row, error = BLOCK_END, 0, int(steps == 0), 0.0
+    optimize_for_size()
+    state = work.state
+    end = work.end
+    time = place.time
+    step = place.step
+    sample = place.sample
+    steps = place.steps
+    error_before = place.error
+    longest = place.longest
+    status = MORE
+    evaluations = 0
+    row = int(steps == 0)  # the first row of the first block is the start
     for _ in range(_BLOCK):
-        if sample == times.size:
+        if sample == samples.times.size:
             status = DONE
             break
         for stage in range(1, _END + 1):
-            _evaluate(pointers, views, tableau, state, step, stage, stages, new)
+            _evaluate(dynamics, tableau, work, step, stage, end)
         evaluations += _END
-        finite = True
-        for i in range(new.size):
-            finite = finite and abs(new[i]) < LARGEST
-        if fixed and not finite:
+        finite = _is_finite(end)
+        error = 0.0
+        if control.fixed and not finite:
             status = NOT_FINITE
             break
-        if not fixed:
-            error = _error(tableau, state, new, stages, step, tolerance, scale) if finite else np.inf
-            if not error < 1.0:
+        if not control.fixed:
+            error = _error(tableau, control, work, step) if finite else np.inf
+            if not error < 1.0:  # take it again
                 step *= max(_SHRINK, _CAUTION * error ** (-1 / 8)) if finite else _SHRINK
-                if not step > 4e-16 * max(time, 1e-300) or step < 1e-200:
-                    status = TOO_SMALL if finite else NOT_FINITE
+                if not step > _SHORTEST * max(time, 1e-300) or step < 1e-200:
+                    status = STEP_TOO_SMALL if finite else NOT_FINITE
                     break
                 continue
-        prepared = not fixed and _passes(corners, state, new)
-        if prepared:
-            evaluations += _prepare(pointers, views, tableau, state, new, step, stages, work, output)
-            part = _corner(corners, state, output, work)
-            if part < 1.0:
+        has_output = not control.fixed and _passes_corner(control.corners, state, end)
+        if has_output:
+            evaluations += _prepare_output(dynamics, tableau, work, step)
+            part = _first_corner(control.corners, work)
+            if part < 1.0:  # take it again, to the corner
                 step *= part
                 continue
         steps += 1
-        end = steps * step if fixed else time + step
-        last = end * (1 + 1e-14)
-        while sample < times.size and times[sample] <= last:
-            part = (times[sample] - time) / (end - time)
+        end_time = steps * step if control.fixed else time + step
+        passed = end_time * (1 + 1e-14)  # a sample at the end of the step may be so much after it
+        while sample < samples.times.size and samples.times[sample] <= passed:
+            part = (samples.times[sample] - time) / (end_time - time)
             if part > 1 - 1e-12:
-                copy(new, samples[sample])
+                copy(end, samples.states[sample])
             else:
-                if not prepared:
-                    evaluations += _prepare(pointers, views, tableau, state, new, step, stages, work, output)
-                    prepared = True
-                _interpolate(state, output, part, samples[sample])
+                if not has_output:
+                    evaluations += _prepare_output(dynamics, tableau, work, step)
+                    has_output = True
+                _interpolate(work, part, samples.states[sample])
             sample += 1
-        time = end
-        copy(new, state)
-        copy(stages[_END], stages[0])
-        if row < kept_times.size:
-            kept_times[row] = min(time, times[-1])  # a fixed step may go beyond the last sample, which is there by now
-            copy(samples[times.size - 1] if time > times[-1] else state, kept_states[row])
+        time = end_time
+        copy(end, state)
+        copy(work.stages[_END], work.stages[0])
+        longest = max(longest, step)
+        if row < ends.times.size:
+            _write_end(samples, ends, row, time, state)
             row += 1
-        reached = max(reached, step)
-        if not fixed:
-            growth = _CAUTION * max(error, 1e-12) ** (0.75 * _MEMORY - 1 / 8) * before**_MEMORY
-            step = min(longest, step * min(_GROW, max(_SHRINK, growth)))
-            before = max(error, _LEAST)
-            if time < times[-1]:  # a motion at rest would take steps without bound
-                step = min(step, times[-1] - time)
-    return status, (time, step, sample, steps, before, reached), evaluations, row
+        if not control.fixed:
+            remaining = samples.times[samples.times.size - 1] - time
+            step = _next_step(control, step, error, error_before, remaining)
+            error_before = max(error, _LEAST_ERROR)
+    place = _Place(time, step, sample, steps, error_before, longest)
+    return Block(status, time, evaluations, row, place)
 
 
-@inner
-def _passes(corners, state, new):
-    """Return whether a sum that the `corners` name, and that is not rounding, changes its sign in a step."""
-    small()
+@inlined
+def _evaluate(dynamics, tableau, work, step, stage, out):
+    """Evaluate the derivative at a `stage` of the step, and leave the state there in `out`."""
+    for i in range(out.size):
+        out[i] = 0.0
+    for earlier in range(stage):  # stage by stage, so that additions can overlap
+        weight = tableau[stage, earlier]
+        if weight != 0.0:
+            for i in range(out.size):
+                out[i] += weight * work.stages[earlier, i]
+    for i in range(out.size):
+        out[i] = work.state[i] + step * out[i]
+    write_derivative(dynamics, out, work.stages[stage])
+
+
+@inlined
+def _is_finite(state):
+    """Return whether no component of a state is larger than MuJoCo allows."""
+    finite = True
+    for i in range(state.size):
+        finite = finite and abs(state[i]) < LARGEST
+    return finite
+
+
+@compiled
+def _error(tableau, control, work, step):
+    """Return the estimated error of the step over the tolerated one."""
+    optimize_for_size()
+    fifth_squares = 0.0
+    third_squares = 0.0
+    for i in range(work.state.size):
+        fifth = 0.0
+        third = 0.0
+        for stage in range(_STAGES):
+            third += tableau[_THIRD_ORDER_ERROR, stage] * work.stages[stage, i]
+            fifth += tableau[_FIFTH_ORDER_ERROR, stage] * work.stages[stage, i]
+        largest = max(abs(work.state[i]), abs(work.end[i]))
+        tolerated = control.tolerance * (control.scale[i] + largest)
+        fifth_squares += fifth / tolerated * (fifth / tolerated)  # a power takes long to compile
+        third_squares += third / tolerated * (third / tolerated)
+    size = math.sqrt((fifth_squares + 0.01 * third_squares) * work.state.size)
+    return step * fifth_squares / size if size > 0 else 0.0
+
+
+@inlined
+def _next_step(control, step, error, error_before, remaining):
+    """Return the length of the step after one with this `error` [s], up to the end of the run in `remaining` [s]."""
+    growth = _CAUTION * max(error, 1e-12) ** (0.75 * _MEMORY - 1 / 8) * error_before**_MEMORY
+    following = min(control.longest, step * min(_GROW, max(_SHRINK, growth)))
+    if remaining > 0:  # a motion at rest would take steps without bound
+        following = min(following, remaining)
+    return following
+
+
+@inlined
+def _write_end(samples, ends, row, time, state):
+    """Write the end of a step to a row of `ends`; that of a step beyond the last sample is the last sample."""
+    last = samples.times.size - 1
+    if time > samples.times[last]:
+        ends.times[row] = samples.times[last]
+        copy(samples.states[last], ends.states[row])
+    else:
+        ends.times[row] = time
+        copy(state, ends.states[row])
+
+
+@compiled
+def _prepare_output(dynamics, tableau, work, step):
+    """Write the coefficients of the continuous output over the step, and return the number of evaluations."""
+    optimize_for_size()
+    output = work.output
+    stages = work.stages
+    for stage in range(_END + 1, _STAGES):
+        _evaluate(dynamics, tableau, work, step, stage, work.spare)
+    for i in range(work.state.size):
+        change = work.end[i] - work.state[i]
+        output[0, i] = change
+        output[1, i] = step * stages[0, i] - change
+        output[2, i] = 2 * change - step * (stages[_END, i] + stages[0, i])
+        for k in range(3, _COEFFICIENTS):
+            output[k, i] = 0.0
+            for stage in range(_STAGES):
+                output[k, i] += step * tableau[_OUTPUT - 3 + k, stage] * stages[stage, i]
+    return _STAGES - _END - 1
+
+
+@compiled
+def _interpolate(work, part, out):
+    """Write the state after a `part` of the step, between 0 and 1, to `out`."""
+    optimize_for_size()
+    for i in range(out.size):
+        value = 0.0
+        for k in range(_COEFFICIENTS - 1, -1, -1):
+            value += work.output[k, i]
+            value *= part if k % 2 == 0 else 1 - part
+        out[i] = work.state[i] + value
+
+
+@compiled
+def _passes_corner(corners, state, end):
+    """Return whether one of the `corners`' rates, unless it is rounding, changes its sign in a step."""
+    optimize_for_size()
     for row in range(len(corners)):
-        first = second = rounding = 0.0
+        first = 0.0
+        last = 0.0
+        size = 0.0
         for i in range(state.size):
             first += corners[row, i] * state[i]
-            second += corners[row, i] * new[i]
-            rounding += abs(corners[row, i]) * max(abs(state[i]), abs(new[i]))
-        if first * second < 0 and min(abs(first), abs(second)) > _ROUNDING * rounding:
+            last += corners[row, i] * end[i]
+            size += abs(corners[row, i]) * max(abs(state[i]), abs(end[i]))
+        if first * last < 0 and min(abs(first), abs(last)) > _ROUNDING * size:
             return True
     return False
 
 
-@inner
-def _corner(corners, state, output, work):
-    """Return the share of a step after which the first of the sums changes its sign; 1 if only at one of its ends."""
-    small()
+@compiled
+def _first_corner(corners, work):
+    """Return the part of the step after which the first of the rates changes its sign; 1 if only at one of its ends."""
+    optimize_for_size()
     first = 1.0
     for row in range(len(corners)):
-        low, high, sign = 0.0, first, 0.0
-        for i in range(state.size):
-            sign += corners[row, i] * state[i]
+        at_begin = 0.0
+        for i in range(work.state.size):
+            at_begin += corners[row, i] * work.state[i]
+        low = 0.0
+        high = first
         for _ in range(_HALVINGS):
-            middle, value = (low + high) / 2, 0.0
-            _interpolate(state, output, middle, work)
-            for i in range(state.size):
-                value += corners[row, i] * work[i]
-            if value * sign > 0:
+            middle = (low + high) / 2
+            _interpolate(work, middle, work.spare)
+            rate = 0.0
+            for i in range(work.state.size):
+                rate += corners[row, i] * work.spare[i]
+            if rate * at_begin > 0:
                 low = middle
             else:
                 high = middle
-        if _BESIDE < high < 1 - _BESIDE:
+        if _AT_AN_END < high < 1 - _AT_AN_END:
             first = high
     return first
-
-
-@inner
-def _error(tableau, state, new, stages, step, tolerance, scale):
-    """Return the estimated error of a step over the tolerated one."""
-    small()
-    fifth = third = 0.0
-    for i in range(state.size):
-        weight, five, three = tolerance * (scale[i] + max(abs(state[i]), abs(new[i]))), 0.0, 0.0
-        for j in range(len(stages)):
-            three += tableau[_ERRORS, j] * stages[j, i]
-            five += tableau[_ERRORS + 1, j] * stages[j, i]
-        fifth += five / weight * (five / weight)  # a power would be compiled a twentieth of a second
-        third += three / weight * (three / weight)
-    size = math.sqrt((fifth + 0.01 * third) * state.size)
-    return abs(step) * fifth / size if size > 0 else 0.0
-
-
-@inner
-def _prepare(pointers, views, tableau, state, new, step, stages, work, output):
-    """Write the coefficients of the continuous output over a step, and return the number of evaluations."""
-    small()
-    for stage in range(_END + 1, _ERRORS):
-        _evaluate(pointers, views, tableau, state, step, stage, stages, work)
-    for i in range(state.size):
-        change = new[i] - state[i]
-        output[0, i] = change
-        output[1, i] = step * stages[0, i] - change
-        output[2, i] = 2 * change - step * (stages[_END, i] + stages[0, i])
-        for k in range(3, len(output)):
-            output[k, i] = 0.0
-            for j in range(len(stages)):
-                output[k, i] += step * tableau[_OUTPUT - 3 + k, j] * stages[j, i]
-    return _ERRORS - _END - 1
-
-
-@inner
-def _interpolate(state, output, part, out):
-    """Write the state after the fraction `part` of a step from `state` to `out`."""
-    small()
-    for i in range(state.size):
-        value = 0.0
-        for k in range(6, -1, -1):
-            value += output[k, i]
-            value *= part if k % 2 == 0 else 1 - part
-        out[i] = state[i] + value

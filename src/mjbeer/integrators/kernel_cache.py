@@ -1,4 +1,4 @@
-"""The folder in which compiled kernels are kept: its name has a hash of all files that their code comes from.
+"""The folder in which compiled kernels are kept: its name has a hash of all files that their code may come from.
 
 numba compiles a kernel anew when the kernel's own file has changed, and looks at no other. But what a kernel calls is
 compiled into it, as are the constants that it uses, and these lie in other files as well: after a change there numba
@@ -16,10 +16,13 @@ from typing import Any
 
 from numba import config, njit
 
-from mjbeer.model import mujoco_library
-
-SOURCES = (*sorted(pathlib.Path(__file__).parent.glob("*.py")), pathlib.Path(mujoco_library.__file__))
-"""The files from which kernels of other files take functions and constants."""
+_PACKAGE = pathlib.Path(__file__).parents[1]
+SOURCES = tuple(
+    path
+    for room in ("theory", "model", "integrators", "simulation")
+    for path in sorted((_PACKAGE / room).rglob("*.py"))
+)
+"""The files from which kernels may take functions and constants: those of the rooms that have kernels, and below."""
 _PREFIX = "mjbeer-"
 _UNUSED = 24 * 3600.0
 """Time after which the folder of other sources is removed [s]. A process that has begun earlier, with those sources,

@@ -1,0 +1,139 @@
+"""The first steps of Gauss-Jackson, and MuJoCo's accelerations in Sundman time, in compiled code.
+
+A multistep method needs accelerations before it can take a step: those of the six steps before the start, of the start
+and of the six steps after it. They are found by iteration. With any thirteen accelerations the formulas give places and
+rates at all thirteen steps, at which MuJoCo is asked for better accelerations. The law that phi nearly obeys costs next
+to nothing, and is iterated first.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from mjbeer.integrators.compiling import compiled, optimize_for_size
+from mjbeer.integrators.dynamics import accelerate
+from mjbeer.integrators.gauss_jackson.weights import (
+    COUNT,
+    POSITION_WEIGHTS,
+    VELOCITY_WEIGHTS,
+    row_of,
+    weighted,
+)
+
+MIDDLE = COUNT // 2
+"""Index of the start among the first steps."""
+_ITERATIONS = 30
+"""Largest number of iterations; a timestep that is not too long takes five to eight."""
+_ROUNDING = 1e-16
+"""Change of the accelerations in an iteration, over the largest of them, which is rounding."""
+_SMALL_CHANGE = 1e-9
+"""The same, below which an iteration that does not improve any more has found them."""
+_START = row_of(MIDDLE)
+_ALL = np.int64(COUNT)  # no plain number, as for `row_of`
+_OUTWARDS = np.argsort(np.abs(np.arange(COUNT) - MIDDLE), stable=True)
+"""The first steps in the order of an iteration: the start, then the step before it and the one after it..."""
+
+
+def _since_start() -> tuple[np.ndarray, np.ndarray]:
+    """Return weights of the first accelerations in velocity and position less those that the start implies.
+
+    The start implies its own velocity at all steps, and a position that changes evenly. Each has shape (COUNT, COUNT),
+    with a row for each step, the first one first.
+    """
+    velocities = VELOCITY_WEIGHTS[:0:-1]
+    velocities_since = velocities - velocities[MIDDLE]
+    steps = np.arange(-MIDDLE, MIDDLE + 1)[:, None]
+    positions = POSITION_WEIGHTS[:0:-1]
+    positions_since = positions - (positions[MIDDLE] + steps * velocities[MIDDLE])
+    return velocities_since, positions_since
+
+
+_VELOCITIES_SINCE, _POSITIONS_SINCE = _since_start()
+
+
+class Accelerations(NamedTuple):
+    """What MuJoCo says of a state."""
+
+    phi: float  # second derivative of phi in Sundman time [rad/s^2]
+    steady: float  # of the slide less arm sin(phi), in time [m/s^2]
+
+
+class History(NamedTuple):
+    """The last `Accelerations`; the newest `COUNT` of them count."""
+
+    phi: np.ndarray
+    steady: np.ndarray
+
+
+class FirstSums(NamedTuple):
+    """What the first steps have given besides their accelerations."""
+
+    evaluations: int  # 0 if no accelerations were found
+    first: float  # the first sum of the accelerations, up to that of the last of these steps
+    second: float
+
+
+@compiled
+def accelerations(dynamics, sundman, phi, rate):
+    """Return MuJoCo's `Accelerations` where phi has a `rate` [rad/s] in Sundman time. The slide rests at its origin."""
+    last = dynamics.qpos.size - 1
+    sin = math.sin(sundman.turns * phi)
+    cos = math.cos(sundman.turns * phi)
+    dt_ds_squared = sundman.constant + sundman.varying * sin * sin
+    phi_dot = rate / math.sqrt(dt_ds_squared)
+    dynamics.qpos[last] = phi
+    dynamics.qvel[last] = phi_dot
+    accelerate(dynamics)
+    phi_ddot = dynamics.qacc[last]
+    # phi' = phi_dot dt/ds, and so phi'' = phi_ddot (dt/ds)^2 + phi_dot^2 d/dphi (dt/ds)^2 / 2.
+    half_slope = sundman.varying * sundman.turns * sin * cos
+    in_s = dt_ds_squared * phi_ddot + half_slope * phi_dot * phi_dot
+    steady = 0.0
+    if last > 0:
+        swinging = math.cos(phi) * phi_ddot - math.sin(phi) * phi_dot * phi_dot  # of sin(phi)
+        steady = dynamics.qacc[0] - sundman.arm * swinging
+    return Accelerations(in_s, steady)
+
+
+@compiled
+def find_first_steps(dynamics, sundman, start, timestep, history):
+    """Write the accelerations of the first `COUNT` steps around the node `start` to `history`; return `FirstSums`."""
+    optimize_for_size()
+    evaluations = 0
+    by_law = True
+    change_before = np.inf
+    found = False
+    for _ in range(_ITERATIONS):
+        change = 0.0
+        largest = 0.0
+        for order in range(COUNT):
+            k = _OUTWARDS[order]
+            since = timestep * weighted(_POSITIONS_SINCE, k, history.phi, _ALL)
+            phi = start.phi + timestep * ((k - MIDDLE) * start.rate + since)
+            if by_law:
+                law = sundman.law
+                acceleration = law.constant + law.cosine * math.cos(phi) + law.sine * math.sin(phi)
+            else:
+                since = weighted(_VELOCITIES_SINCE, k, history.phi, _ALL)
+                both = accelerations(dynamics, sundman, phi, start.rate + timestep * since)
+                acceleration = both.phi
+                history.steady[k] = both.steady
+                evaluations += 1
+            change = max(change, abs(acceleration - history.phi[k]))
+            largest = max(largest, abs(acceleration))
+            history.phi[k] = acceleration
+        no_better = change >= change_before and change <= _SMALL_CHANGE * largest
+        if change <= _ROUNDING * largest or no_better:
+            if not by_law:
+                found = True
+                break
+            by_law = False
+        change_before = change
+    if not by_law and change <= _SMALL_CHANGE * largest:
+        found = True
+    # The two formulas of `weights` at the start, solved for the sums.
+    first = start.rate / timestep - weighted(VELOCITY_WEIGHTS, _START, history.phi, _ALL)
+    place = start.phi / (timestep * timestep)
+    second = place + (1 + MIDDLE) * first - weighted(POSITION_WEIGHTS, _START, history.phi, _ALL)
+    return FirstSums(evaluations if found else 0, first, second)

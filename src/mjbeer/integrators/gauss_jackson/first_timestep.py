@@ -1,0 +1,76 @@
+"""The timestep of Gauss-Jackson that a tolerance should allow: the first guess, which need not be good."""
+
+import math
+from typing import NamedTuple
+
+from mjbeer.integrators.gauss_jackson.swing_law import SwingLaw
+
+_SHARE = 0.34
+"""The timestep, as a share of the distance of the nearest pole, at which the error in a cycle would reach 1 rad if it
+grew as the timestep's 14th power all the way; fitted to random motions."""
+_ORDER = 14
+"""Power of the timestep with which the error in a cycle grows."""
+_LOOSEST = 1e-5
+"""Tolerance [rad] above which the timestep does not grow any more, as the method would become unstable."""
+_FEWEST = 8
+"""Least number of steps of a run."""
+_SMALLEST_SWING = 1e-3
+"""Sine of half the amplitude below which a swing is as even as with this one."""
+
+
+class FirstTimestep(NamedTuple):
+    """A timestep in Sundman time, and how far the load turns in it."""
+
+    timestep: float  # [s]
+    largest_turn: float  # angle by which phi turns in a timestep, at most [rad]
+
+
+def first_timestep(law: SwingLaw, phi0: float, phi_dot0: float, duration: float, tolerance: float) -> FirstTimestep:
+    """Return a timestep for runs of some `duration` [s] that should err by a `tolerance` [rad].
+
+    The motion starts at `phi0` [rad] with the rate `phi_dot0` [rad/s], where Sundman time passes as fast as t. In that
+    time phi is a pendulum, and its motion an elliptic function. Its Taylor series converges as far as its nearest pole,
+    and this limits the steps of every method. Without a slope the pole lies at the imaginary time K'(k)/omega. Here
+    omega is the rate of small swings, and k^2 the largest kinetic energy divided by that which turns the load over.
+    """
+    inertia = law.inertia(phi0)
+    kinetic = _largest_kinetic_energy(law, phi0, phi_dot0, duration)
+    largest_rate = math.sqrt(2 * kinetic / inertia)
+    timestep = duration / _FEWEST
+    if law.depth > 0:
+        modulus = max(math.sqrt(kinetic / (2 * law.depth)), _SMALLEST_SWING)
+        pole = _complementary_integral(modulus) * math.sqrt(inertia / law.depth)
+        cycles = math.sqrt(law.depth / law.mean_inertia()) * duration / math.tau
+        allowed = min(tolerance, _LOOSEST) / max(0.5, cycles)
+        timestep = min(timestep, _SHARE * pole * allowed ** (1 / _ORDER))
+    return FirstTimestep(timestep, timestep * largest_rate)
+
+
+def _largest_kinetic_energy(law: SwingLaw, phi0: float, phi_dot0: float, duration: float) -> float:
+    """Return the largest kinetic energy of a motion [J], or a little more."""
+    # V' = -ramp + depth sin(phi - bottom) vanishes at the rest and, half a turn and twice the lean on, at the crest.
+    has_well = law.depth > abs(law.ramp)
+    lean = math.asin(law.ramp / law.depth) if has_well else math.copysign(math.pi / 2, law.ramp)
+    between_crests = law.bottom - lean
+    between_crests += math.tau * round((phi0 - between_crests) / math.tau)  # in the turn of the start
+    rest = between_crests + 2 * lean
+    lower_crest = between_crests + math.copysign(math.pi, law.ramp)
+    energy = law.inertia(phi0) * phi_dot0**2 / 2 + law.potential(phi0)
+    kinetic = max(0.0, energy - law.potential(rest))
+    if has_well and energy <= law.potential(lower_crest):
+        return kinetic
+    # It turns over and over. A turn takes 2 pi sqrt(J) / sqrt(2 E), and E grows by 2 pi |ramp| in it.
+    speed = math.sqrt(2 * (kinetic + 2 * law.depth))
+    speed += abs(law.ramp) * duration / math.sqrt(law.mean_inertia())
+    return speed**2 / 2
+
+
+def _complementary_integral(modulus: float) -> float:
+    """Return the complete elliptic integral K'(k), which is pi/2 over the arithmetic-geometric mean of 1 and k."""
+    arithmetic = 1.0
+    geometric = modulus
+    while abs(arithmetic - geometric) > 1e-3 * arithmetic:
+        mean = (arithmetic + geometric) / 2
+        geometric = math.sqrt(arithmetic * geometric)
+        arithmetic = mean
+    return math.pi / (2 * arithmetic)

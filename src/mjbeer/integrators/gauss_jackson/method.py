@@ -1,0 +1,270 @@
+"""The integrator GaussJackson: a multistep method around MuJoCo's forward dynamics, for smooth motions.
+
+A step predicts phi from the sums of all accelerations and the last thirteen of them, evaluates MuJoCo's acceleration
+there, and corrects phi with it. For the little by which phi then changes, the slope of the law that phi nearly obeys
+stands for a second evaluation, without which the method would be unstable at long timesteps. States are read off two
+steps later, with accelerations on both sides, where the formula errs far less.
+
+Steps are even in the Sundman time. The slide of a load in a can that slides along, less a share of sin(phi), is evenly
+accelerated, and is integrated in t. The motion comes from the accelerations of MuJoCo alone: with another law the steps
+must be shorter.
+
+O. Montenbruck and E. Gill, Satellite Orbits, section 4.2; M. M. Berry and L. M. Healy, Implementation of Gauss-Jackson
+integration for orbit propagation, J. Astronaut. Sci. 52 (2004), and The generalized Sundman transformation for
+propagation of high-eccentricity elliptical orbits, Adv. Astronaut. Sci. 112 (2002).
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from mjbeer.exceptions import UnsupportedError
+from mjbeer.integrators import Observer
+from mjbeer.integrators.compiling import compiled, inlined, kernel, optimize_for_size
+from mjbeer.integrators.dynamics import (
+    DONE,
+    MORE,
+    NOT_FINITE,
+    Block,
+    Dynamics,
+    Steps,
+    room_for_ends,
+)
+from mjbeer.integrators.gauss_jackson.first_steps import (
+    MIDDLE,
+    History,
+    accelerations,
+    find_first_steps,
+)
+from mjbeer.integrators.gauss_jackson.step_curve import (
+    Node,
+    StepCurve,
+    end_node,
+    find,
+    fit,
+    whole_duration,
+)
+from mjbeer.integrators.gauss_jackson.sundman_time import LARGEST_TURN, SundmanTime, dt_ds
+from mjbeer.integrators.gauss_jackson.weights import (
+    COUNT,
+    LAG,
+    POSITION_WEIGHTS,
+    VELOCITY_WEIGHTS,
+    row_of,
+    weighted,
+)
+from mjbeer.model.mujoco_library import LARGEST, quiet
+
+BLOCK = 1024
+"""Steps between two returns to Python, so that a long run can be interrupted."""
+_NEXT = row_of(-1)
+_LAST = row_of(0)
+
+
+class _Totals(NamedTuple):
+    """Sums of many terms: each is an array of the sum and of what rounding has added to it so far."""
+
+    first: np.ndarray  # the first sum of the accelerations of phi, in units of the step
+    second: np.ndarray  # the second
+    time: np.ndarray  # at the last state that was read off [s]
+    position: np.ndarray  # of the slide less arm sin(phi), whose acceleration is steady, at that time [m]
+    velocity: np.ndarray  # of the same [m/s]
+
+
+class _Place(NamedTuple):
+    """Where a run is between two blocks."""
+
+    back: int  # how many steps before the last acceleration the last state was read off
+    sample: int  # index of the next sample
+    node: Node  # the last state that was read off
+
+
+class GaussJackson:
+    """The Gauss-Jackson method with second sums around the forward dynamics of one model.
+
+    The model has the hinge phi, after a slide on which nothing depends, or alone. All steps last a `timestep` [s] in
+    `sundman_time`. A step is one evaluation, where DOP853 has twelve and steps three times as large. A damping or a
+    constraint that decays fast would make it unstable.
+
+    Raises:
+      UnsupportedError: if the model has constraints or damping.
+    """
+
+    def __init__(self, dynamics: Dynamics, timestep: float, sundman_time: SundmanTime) -> None:
+        if dynamics.constrained:
+            raise UnsupportedError("GaussJackson integrates smooth motions only, and this model has constraints")
+        if dynamics.damped:
+            raise UnsupportedError("GaussJackson integrates undamped motions only, and this model has damping")
+        self.name = "GaussJackson"
+        self._dynamics = dynamics
+        self._timestep = timestep
+        self._sundman_time = sundman_time
+
+    @quiet()
+    def run(self, start: np.ndarray, times: np.ndarray, observer: Observer | None = None) -> np.ndarray:
+        """Return the states at increasing `times` [s], shape (samples, nq + nv), of the motion from `start` at time 0.
+
+        Raises:
+          DivergenceError: if the motion stops being finite, or there are too many evaluations.
+        """
+        dynamics = self._dynamics
+        sundman = self._sundman_time
+        samples = Steps(times, np.empty((len(times), len(start))))
+        at_start = int(times[0] == 0)  # samples that are there already
+        samples.states[:at_start] = start
+        dynamics.data.qpos[:] = 0.0
+        dynamics.data.qvel[:] = 0.0
+        history = History(np.zeros(COUNT + BLOCK), np.zeros(COUNT + BLOCK))
+        coefficients = np.empty(COUNT + 2)
+        phi = float(start[len(start) // 2 - 1])
+        pace = dt_ds.py_func(sundman, phi)
+        dynamics.run_blocks(
+            self.name,
+            _advance,
+            (
+                dynamics.kernel_view,
+                sundman,
+                self._timestep,
+                history,
+                _totals_at(start, sundman.arm),
+                coefficients,
+                samples,
+            ),
+            _Place(MIDDLE, at_start, Node(phi, float(start[-1]) * pace, pace)),
+            room_for_ends(start, BLOCK + COUNT if observer else 0),
+            observer,
+        )
+        return samples.states
+
+
+def _totals_at(start: np.ndarray, arm: float) -> _Totals:
+    """Return the totals at the start of a run; the first steps will give both sums of accelerations."""
+    totals = _Totals(*np.zeros((5, 2)))
+    joints = len(start) // 2
+    if joints > 1:
+        phi = float(start[joints - 1])
+        totals.position[0] = float(start[0]) - arm * math.sin(phi)
+        totals.velocity[0] = float(start[joints]) - arm * math.cos(phi) * float(start[-1])
+    return totals
+
+
+@kernel
+def _advance(dynamics, sundman, timestep, history, totals, coefficients, samples, ends, place):
+    """Take up to a block of steps, and return the `Block`.
+
+    `dynamics` is a `ForwardDynamics`. `history` has the last accelerations first, and room for those of the block.
+    `coefficients` is space to work in. The rows of `samples` whose times are passed are filled in, and the ends of
+    steps are written to `ends`, if that has room.
+    """
+    optimize_for_size()
+    back = place.back
+    sample = place.sample
+    node = place.node
+    status = MORE
+    evaluations = 0
+    row = 0
+    end = history.phi.size - BLOCK  # `COUNT`: the accelerations before this index are there
+    if back == MIDDLE:  # this is the first block
+        begin = find_first_steps(dynamics, sundman, node, timestep, history)
+        totals.first[0] = begin.first
+        totals.second[0] = begin.second
+        evaluations = begin.evaluations
+        row = 1
+        if evaluations == 0:
+            status = NOT_FINITE
+        elif sample == samples.times.size:
+            status = DONE
+    while status == MORE and end < history.phi.size:
+        if back > LAG:  # the first steps are there already
+            back -= 1
+        else:
+            _take_step(dynamics, sundman, timestep, history, totals, end)
+            end += 1
+            evaluations += 1
+        curve = StepCurve(coefficients, totals.first[0], totals.second[0], timestep, back + 1)
+        after = end_node(sundman, curve, history.phi, end)
+        if not (abs(after.phi) < LARGEST and timestep * abs(after.rate) < LARGEST_TURN):
+            status = NOT_FINITE  # it may also be NaN
+            break
+        span = whole_duration(sundman, curve, history.phi, end)
+        acceleration = _mean_steady(history, end - 1 - back, node, after)
+        passed = (totals.time[0] + span) * (1 + 1e-14)  # a sample may be so much after the step
+        if samples.times[sample] <= passed:
+            fit(curve, history.phi, end)
+        while sample < samples.times.size and samples.times[sample] <= passed:
+            since = samples.times[sample] - totals.time[0]
+            there = find(sundman, curve, node, after, span, since)
+            _write(sundman, there, totals, acceleration, since, samples.states, sample)
+            sample += 1
+            if sample == samples.times.size:  # the run ends within this step
+                status = DONE
+                after = there
+                span = since
+        if row < ends.times.size:
+            ends.times[row] = totals.time[0] + span
+            _write(sundman, after, totals, acceleration, span, ends.states, row)
+            row += 1
+        _add(totals.time, span)
+        _add(totals.position, span * (totals.velocity[0] + span * acceleration / 2))
+        _add(totals.velocity, span * acceleration)
+        node = after
+    for k in range(COUNT):
+        history.phi[k] = history.phi[end - COUNT + k]
+        history.steady[k] = history.steady[end - COUNT + k]
+    return Block(status, totals.time[0], evaluations, row, _Place(back, sample, node))
+
+
+@inlined
+def _take_step(dynamics, sundman, timestep, history, totals, end):
+    """Predict, evaluate and correct the next step: write its accelerations at index `end`, and add them up."""
+    square = timestep * timestep
+    first = totals.first[0]
+    second = totals.second[0]
+    predicted = square * (second + weighted(POSITION_WEIGHTS, _NEXT, history.phi, end))
+    rate = timestep * (first + weighted(VELOCITY_WEIGHTS, _NEXT, history.phi, end))
+    both = accelerations(dynamics, sundman, predicted, rate)
+    history.phi[end] = both.phi
+    history.steady[end] = both.steady
+    corrected = square * (second + weighted(POSITION_WEIGHTS, _LAST, history.phi, end + 1))
+    law = sundman.law
+    slope = law.sine * math.cos(predicted) - law.cosine * math.sin(predicted)
+    acceleration = both.phi + slope * (corrected - predicted)
+    history.phi[end] = acceleration
+    _add(totals.first, acceleration)
+    _add(totals.second, totals.first[0])
+
+
+@inlined
+def _mean_steady(history, index, before, after):
+    """Return the steady acceleration in the step that ends with that of an `index` [m/s^2].
+
+    It hardly changes but for rounding, which is largest where the load is fastest, and dt/ds is least.
+    """
+    weighted_sum = before.dt_ds * history.steady[index - 1] + after.dt_ds * history.steady[index]
+    return weighted_sum / (before.dt_ds + after.dt_ds)
+
+
+@compiled
+def _write(sundman, node, totals, acceleration, since, states, row):
+    """Write the state at a node to a row of `states`, `since` [s] after the begin of its step, where `totals` hold."""
+    optimize_for_size()
+    last = states.shape[1] // 2 - 1
+    phi_dot = node.rate / node.dt_ds
+    states[row, last] = node.phi
+    states[row, 2 * last + 1] = phi_dot
+    if last > 0:
+        velocity = totals.velocity[0]
+        moved = since * (velocity + since * acceleration / 2)
+        swinging = sundman.arm * math.cos(node.phi) * phi_dot
+        states[row, 0] = totals.position[0] + moved + sundman.arm * math.sin(node.phi)
+        states[row, 1 + last] = velocity + since * acceleration + swinging
+
+
+@inlined
+def _add(total, term):
+    """Add a term to one of the totals, less what rounding has added to that before (Kahan's sum)."""
+    value = total[0]
+    term -= total[1]
+    total[0] = value + term
+    total[1] = (total[0] - value) - term

@@ -1,0 +1,136 @@
+"""The state at the end of a step of Gauss-Jackson, the time that passes in the step, and the states within it.
+
+In a step phi is a polynomial of s: the one by which the method itself adds up accelerations. What passes of t is the
+integral of dt/ds, by Gauss's formula, without an evaluation of the dynamics. All of it is compiled code.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from mjbeer.integrators.compiling import compiled, inlined, optimize_for_size
+from mjbeer.integrators.gauss_jackson.sundman_time import dt_ds
+from mjbeer.integrators.gauss_jackson.weights import (
+    CENTRE,
+    COUNT,
+    LAG,
+    POSITION_POLYNOMIALS,
+    POSITION_WEIGHTS,
+    VELOCITY_WEIGHTS,
+    weighted,
+)
+
+_ATTEMPTS = 5
+"""Largest number of improvements of a sample's place in its step."""
+_PUNCTUAL = 3e-5
+"""Distance of a sample from its time, over the step's duration, after which one more improvement, which cubes it,
+leaves nothing but rounding."""
+
+
+class Node(NamedTuple):
+    """A point of the motion."""
+
+    phi: float  # [rad]
+    rate: float  # dphi/ds [rad/s]
+    dt_ds: float
+
+
+class StepCurve(NamedTuple):
+    """phi in a step, by the formulas of `weights`: both sums, and a polynomial of the last accelerations."""
+
+    coefficients: np.ndarray  # of the polynomial, the highest power first, shape (COUNT + 2,)
+    first: float  # the first sum
+    second: float  # the second sum
+    timestep: float  # in Sundman time [s]
+    back: int  # how many steps before the last acceleration the step begins
+
+
+@inlined
+def end_node(sundman, curve, accelerations, end):
+    """Return the node at the end of the step, by the accelerations before index `end`."""
+    row = curve.back  # that of one step less back, as `row_of` says
+    place = curve.second - curve.back * curve.first
+    place += weighted(POSITION_WEIGHTS, row, accelerations, end)
+    rate = curve.first + weighted(VELOCITY_WEIGHTS, row, accelerations, end)
+    phi = curve.timestep * curve.timestep * place
+    return Node(phi, curve.timestep * rate, dt_ds(sundman, phi))
+
+
+@inlined
+def whole_duration(sundman, curve, accelerations, end):
+    """Return the time [s] that passes in the step, by the accelerations before index `end`."""
+    count = sundman.points.size
+    first_row = (curve.back - 1 - LAG) * count
+    mean = 0.0
+    for point in range(count):
+        place = curve.second - (1 + curve.back - sundman.points[point]) * curve.first
+        place += weighted(sundman.places, first_row + point, accelerations, end)
+        mean += sundman.weights[point] * dt_ds(sundman, curve.timestep * curve.timestep * place)
+    return curve.timestep * mean
+
+
+@compiled
+def fit(curve, accelerations, end):
+    """Write the coefficients of a curve, by the accelerations before index `end`."""
+    coefficients = curve.coefficients
+    for k in range(COUNT + 2):
+        coefficients[k] = 0.0
+    for row in range(COUNT):
+        for k in range(COUNT + 2):
+            coefficients[k] += POSITION_POLYNOMIALS[row, k] * accelerations[end - COUNT + row]
+
+
+@inlined
+def node_at(sundman, curve, share):
+    """Return the node after a share of the step, between 0 and 1, if the curve is fitted."""
+    back = curve.back - share
+    x = back - CENTRE
+    value = 0.0
+    slope = 0.0
+    for k in range(COUNT + 2):
+        slope = slope * x + value
+        value = value * x + curve.coefficients[k]
+    phi = curve.timestep * curve.timestep * (curve.second - (1 + back) * curve.first + value)
+    rate = curve.timestep * (curve.first - slope)  # `back` counts against time
+    return Node(phi, rate, dt_ds(sundman, phi))
+
+
+@compiled
+def duration(sundman, curve, share):
+    """Return the time [s] that passes in the first share of the step, if the curve is fitted."""
+    mean = 0.0
+    for point in range(sundman.points.size):
+        back = curve.back - share * sundman.points[point]
+        x = back - CENTRE
+        value = 0.0
+        for k in range(COUNT + 2):
+            value = value * x + curve.coefficients[k]
+        place = curve.second - (1 + back) * curve.first + value
+        mean += sundman.weights[point] * dt_ds(sundman, curve.timestep * curve.timestep * place)
+    return curve.timestep * share * mean
+
+
+@compiled
+def find(sundman, curve, before, after, span, since):
+    """Return the node `since` [s] after the begin of the step, if the curve is fitted.
+
+    The nodes at its begin and its end are `before` and `after`, `span` [s] apart.
+    """
+    optimize_for_size()
+    # First the cubic that has the right value and slope, s over t, at both ends of the step.
+    share = since / span
+    first = span / (curve.timestep * before.dt_ds)
+    last = span / (curve.timestep * after.dt_ds)
+    place = share * (first + share * (3 - 2 * first - last + share * (first + last - 2)))
+    for _ in range(_ATTEMPTS):
+        node = node_at(sundman, curve, place)
+        late = since - duration(sundman, curve, place)
+        # Newton's step in s, and a second term for `growth`, by which share dt/ds grows in a second of s.
+        growth = sundman.varying * sundman.turns * math.sin(2 * sundman.turns * node.phi)
+        growth *= node.rate / (2 * node.dt_ds * node.dt_ds)
+        ahead = late / node.dt_ds
+        place += ahead * (1 - growth * ahead / 2) / curve.timestep
+        if abs(late) <= _PUNCTUAL * span:
+            break
+    return node_at(sundman, curve, place)

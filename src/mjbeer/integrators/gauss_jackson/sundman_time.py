@@ -1,0 +1,123 @@
+"""The Sundman time s, in which the steps of Gauss-Jackson are even.
+
+A light wheel passes its lowest point in a hundredth of its swing, and steps that are even in t would all have to be as
+short as that passage needs. The (generalized) Sundman transformation
+
+    dt/ds = sqrt(J(phi)/unit)
+
+makes the passage as long as the rest of the swing. It also takes J out of the law: with phi' = dphi/ds,
+J phi_dot^2 = unit phi'^2, so that unit phi'' = -V'(phi), a pendulum with a constant inertia.
+"""
+
+import functools
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial.legendre import leggauss
+
+from mjbeer.integrators.compiling import inlined
+from mjbeer.integrators.gauss_jackson.swing_law import SwingLaw
+from mjbeer.integrators.gauss_jackson.weights import CENTRE, COUNT, LAG, POSITION_POLYNOMIALS
+
+LARGEST_TURN = 4.0
+"""The largest angle by which phi may turn in a step [rad]."""
+_MOST_POINTS = 12
+"""Largest number of points over which dt/ds is integrated."""
+_LARGEST_ELLIPSE = 20.0
+"""Largest ellipse of `_points_for`: with a larger one, points would be too few where phi is no line in the step."""
+
+
+class PendulumLaw(NamedTuple):
+    """The law phi'' = constant + cosine cos(phi) + sine sin(phi) in Sundman time [1/s^2]."""
+
+    constant: float
+    cosine: float
+    sine: float
+
+
+class SundmanTime(NamedTuple):
+    """A time s with dt/ds = sqrt(constant + varying sin^2(turns phi)), which must be positive.
+
+    Whatever dt/ds and `law` are, the motion is the same, as its accelerations are MuJoCo's; the nearer they come to the
+    motion's own, the longer the steps may be.
+    """
+
+    constant: float
+    varying: float
+    turns: float
+    law: PendulumLaw  # that phi nearly obeys
+    arm: float  # the slide less arm sin(phi) is evenly accelerated [m]
+    points: np.ndarray  # of Gauss's formula in a step, between 0 and 1
+    weights: np.ndarray  # of these points, whose sum is 1
+    places: np.ndarray  # weights of accelerations in the positions at these points, see `_places`
+
+
+def sundman_time(
+    law: SwingLaw, unit: float, precision: float = 1e-15, largest_turn: float = LARGEST_TURN
+) -> SundmanTime:
+    """Return the Sundman time of a law, in which a load with the inertia `unit` [kg m^2] has dt/ds = 1.
+
+    The duration of a step in which phi turns by `largest_turn` [rad] is known to some `precision`, a share of it.
+    """
+    varying, turns = (law.coupling, 1.0) if law.coupling > 0 else (law.chord, 0.5)
+    constant = law.base / unit
+    count = _points_for(constant, varying / unit, turns, precision, largest_turn)
+    points, weights = _gauss(count)
+    return SundmanTime(
+        constant=constant,
+        varying=varying / unit,
+        turns=turns,
+        law=PendulumLaw(
+            constant=law.ramp / unit,
+            cosine=law.depth / unit * math.sin(law.bottom),
+            sine=-law.depth / unit * math.cos(law.bottom),
+        ),
+        arm=float(law.arm),
+        points=points,
+        weights=weights,
+        places=_places(count),
+    )
+
+
+def _points_for(constant: float, varying: float, turns: float, precision: float, largest_turn: float) -> int:
+    """Return the number of points with which Gauss's formula gives a duration to some precision.
+
+    Its error is the size of an ellipse (the sum of its half-axes, over half the distance of its foci) to the power of
+    minus twice the number of points. The foci are the ends of the step, and on the ellipse lies the complex angle at
+    which dt/ds vanishes.
+    """
+    size = math.log(_LARGEST_ELLIPSE)
+    if varying > 0 and largest_turn > 0:
+        zero = math.asinh(math.sqrt(constant / varying)) / turns
+        size = min(size, math.asinh(2 * zero / largest_turn))
+    return min(_MOST_POINTS, math.ceil(-math.log(precision) / (2 * size)))
+
+
+@functools.cache
+def _gauss(count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return so many points of Gauss's formula between 0 and 1, and their weights."""
+    points, weights = leggauss(count)
+    return (points + 1) / 2, weights / 2
+
+
+@functools.cache
+def _places(count: int) -> np.ndarray:
+    """Return the weights of positions at so many points of a step, one in a row.
+
+    First come the points of the step that ends `LAG` steps before the last acceleration, then those of the steps before
+    it, back to the start of a run, when the last acceleration is the last of the first steps.
+    """
+    points, _ = _gauss(count)
+    ends = np.arange(LAG, COUNT // 2)
+    back = (ends[:, None] + 1 - points).ravel()
+    places = np.vander(back - CENTRE, COUNT + 2) @ POSITION_POLYNOMIALS.T
+    places.flags.writeable = False  # like all weights, or `weighted` would be compiled once more
+    return places
+
+
+@inlined
+def dt_ds(sundman, phi):
+    """Return dt/ds at an angle."""
+    sin = math.sin(sundman.turns * phi)
+    return math.sqrt(sundman.constant + sundman.varying * sin * sin)

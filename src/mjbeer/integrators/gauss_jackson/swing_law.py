@@ -1,0 +1,39 @@
+"""What Gauss-Jackson is told about a motion, as plain numbers: only the length of its steps depends on them."""
+
+import math
+from typing import NamedTuple
+
+
+class SwingLaw(NamedTuple):
+    """The law that phi nearly obeys: an oscillator whose inertia J depends on phi, in a potential V.
+
+        J phi_dot^2 / 2 + V = E,
+        J = base + chord sin^2(phi/2) + coupling sin^2(phi),
+        V = -ramp phi - depth cos(phi - bottom).
+
+    One of `chord` and `coupling` is 0. If the model has a slide, the slide less arm sin(phi) is evenly accelerated.
+    """
+
+    base: float  # [kg m^2]
+    chord: float  # [kg m^2]
+    coupling: float  # [kg m^2]
+    ramp: float  # [N m]
+    depth: float  # [N m]
+    bottom: float  # [rad]
+    arm: float = 0.0  # [m]
+
+    def inertia(self, phi: float) -> float:
+        """Return J [kg m^2]."""
+        return self.base + self.chord * math.sin(phi / 2) ** 2 + self.coupling * math.sin(phi) ** 2
+
+    def largest_inertia(self) -> float:
+        """Return the largest J of all angles [kg m^2]."""
+        return self.base + self.chord + self.coupling
+
+    def mean_inertia(self) -> float:
+        """Return the mean J of a turn [kg m^2]."""
+        return self.base + (self.chord + self.coupling) / 2
+
+    def potential(self, phi: float) -> float:
+        """Return V [J]."""
+        return -self.ramp * phi - self.depth * math.cos(phi - self.bottom)
