@@ -101,8 +101,8 @@ def test_honey_and_ice_take_the_times_that_the_lecture_has(can: str, inside: str
     assert told
     given = dict(urllib.parse.parse_qsl(html.unescape(link[1])))
     assert given[f"{can}-inside"] == inside
-    setting = {"incline": math.radians(float(given["incline"])), "fill": float(given[f"{can}-fill"]) / 100}
-    setting |= {"inside": inside, "metal": True, "phi0": math.radians(float(given[f"{can}-phi0"]))}
+    setting: dict[str, Any] = {"inside": inside, "metal": True, "fill": float(given[f"{can}-fill"]) / 100}
+    setting |= {"incline": math.radians(float(given["incline"])), "phi0": math.radians(float(given[f"{can}-phi0"]))}
     half_a_digit = 0.5 * 10.0 ** -len(told[1].partition(".")[2])
     around = [float(told[1]) - half_a_digit, float(told[1]) + half_a_digit]
     before, after = script(f"motion({json.dumps(setting)}, {around}).distance")
