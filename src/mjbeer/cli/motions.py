@@ -46,6 +46,7 @@ class Summary:
         slip, lift, normal = run.slip / radius, run.lift / radius, run.forces.normal
         solved = not run.solver_warnings
         holds = not (run.rolling_warnings or run.liquid_warnings or self.notes)
+        drift = None if run.scene.dissipates else run.energy_drift  # what damping and drag take is no error
         scale = "the swing's largest kinetic energy" if run.scene.load.offset else "the largest kinetic energy"
         end = "the end" if math.isinf(until) else f"t = {until:.6g} s"
         return (
@@ -56,7 +57,7 @@ class Summary:
             ("end", run.time[-1], "s", "{:.6g}"),
             ("phi at the end", math.degrees(run.phi[-1]), "degrees", "{:.9g}"),
             ("u at the end", run.u[-1], "m", "{:.9g}"),
-            ("energy drift", run.energy_drift, "", f"{{:.2e}} of {scale}"),
+            ("energy drift", drift, "", f"{{:.2e}} of {scale}"),
             ("largest slip", np.abs(slip).max(), "radii", "{:.2e}"),
             ("final slip", slip[-1], "radii", "{:.2e}"),
             ("lowest lift", lift.min(), "radii", "{:.2e}"),

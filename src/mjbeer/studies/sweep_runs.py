@@ -30,7 +30,7 @@ ALWAYS: dict[str, tuple[Callable[[Run], Any], str, str]] = {
     "lowest_normal": (lambda run: run.record.lowest_normal, "N", "lowest normal force"),
     "friction_needed": (lambda run: run.record.needed_friction, "", "friction coefficient needed"),
     "parting_time": (lambda run: run.record.rolling_ends_at, "s", "time from which N < 0"),
-    "energy_drift": (lambda run: run.energy_drift, "", "energy drift over the swing's kinetic energy"),
+    "energy_drift": (lambda run: run.energy_drift, "", "largest change of energy over the swing's kinetic energy"),
 }
 """The quantities that every sweep has, besides whether a run is trusted and its status: what measures each, its unit,
 and what it is in words."""
