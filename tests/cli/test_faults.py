@@ -65,6 +65,15 @@ def test_a_full_standard_output() -> None:
     assert "No space left on device" in err
 
 
+def test_a_closed_standard_output(tmp_path: pathlib.Path) -> None:
+    """It is known before the work, of which nothing is left."""
+    target = tmp_path / "motion.csv"
+    words = ["simulate", *FROZEN, "--output", str(target)]
+    status, _, err = run(words, preexec_fn=lambda: os.close(1))
+    assert (status, err) == (2, "mjbeer: cannot write to standard output: it is closed\n")
+    assert not target.exists()
+
+
 @pytest.mark.parametrize("words", [(), ("--output", "-", "--duration", "2")])
 def test_a_reader_that_goes_away(words: tuple[str, ...]) -> None:
     """Of less and of more than Python and the pipe keep in between."""
