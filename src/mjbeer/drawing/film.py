@@ -11,7 +11,7 @@ from scipy.interpolate import CubicHermiteSpline
 
 from mjbeer import require
 from mjbeer.drawing.camera import AROUND, View, follow, in_space, scale
-from mjbeer.drawing.overlay import HEADER, HEIGHT, NOTE, STRIP, Board, Look, Marks, head, header, note, spans
+from mjbeer.drawing.overlay import HEADER, HEIGHT, NOTE, STRIP, Board, Look, Marks, head, header, note, spans, warn
 from mjbeer.drawing.scene import Display, Painter, coordinates
 from mjbeer.drawing.sheet import INK, Sheet
 from mjbeer.drawing.strip import Strip, charts
@@ -93,6 +93,7 @@ def _pictures(
     marks, board = Marks(trajectory, look, plane), Board(display, float(trajectory.u[0]))
     notes = spans(trajectory, look.notes)
     marked = next(iter(notes.values()), ())
+    doubts = trajectory.solver_warnings
     strip = Strip(charts(trajectory, look.strips), width, below, marked) if below else None
     with closing(Painter(display, (width, seen), still)) as painter:
         for time, now in zip(times, coordinates(trajectory, times), strict=True):
@@ -102,6 +103,7 @@ def _pictures(
             board.draw(sheet, view)
             header(sheet, look, trajectory, time, speed)
             note(sheet, notes, time, top)
+            warn(sheet, doubts, top + spare)
             if strip is not None:
                 strip.draw(sheet, time, height - below)
             yield sheet.picture()
@@ -178,6 +180,7 @@ class Race(Film):
             results = [(math.inf, "")] * len(runners)
         else:
             results, facts = self.results(runners), [f"{self.length:g} m", *facts]
+        doubts = [f"{runner.name}: {found}" for runner in runners for found in runner.trajectory.solver_warnings]
         words = ", ".join([*facts, self.facts]).removesuffix(", ")
         with closing(Painter(display, view.pixels)) as painter:
             for time, now in zip(times, positions, strict=True):
@@ -190,6 +193,7 @@ class Race(Film):
                     sheet.plate(place, [runner.name, *[said] * bool(said)], runner.colour, (1, 0.5))
                 if self.centres:
                     _join(sheet, view, display, now)
+                warn(sheet, doubts, top)
                 yield sheet.picture()
 
 

@@ -55,6 +55,9 @@ def render(
     the whole motion), "pan" (it moves with a constant acceleration), or "auto" (fixed, unless the can would be too
     small). If `progress` is true and standard error is a terminal, it shows a progress bar.
 
+    Where the equations of a run were not solved, each picture says so. A run of a fixed timestep is judged by a second
+    one, which takes twice its time.
+
     Raises:
       ParameterError: if a parameter is not allowed.
       RenderingError: if OpenGL or ffmpeg does not work; the message says what to do.
