@@ -28,6 +28,8 @@ from mjbeer.studies.study import Study
 from mjbeer.theory.record import ERROR
 
 COMMAND = "mjbeer stability"
+UNFINISHED, FINISHED = "unfinished.jsonl", "stability.jsonl"
+"""Files that have the study while it is measured, and when it is whole."""
 KNOWN, RANDOM = "cases", "search"
 """The groups of a study with known and with random cases."""
 SIZE = 4 * len(REGIONS)
@@ -158,17 +160,14 @@ def _table_of_cases(results: Sequence[Result]) -> Table:
 
 
 def conduct(folder: pathlib.Path, quick: bool, console: Console) -> Study:
-    """Measure what the study in `folder` lacks, on all cores, and return the study, kept as stability.jsonl.
-
-    The summary of an earlier study is removed first.
+    """Measure what the study in `folder` lacks, on all cores, and return the study, kept as unfinished.jsonl.
 
     Raises:
       OutputError: if the folder cannot be written to.
       OSError: if the system ends one of the processes.
-      ParameterError: if stability.jsonl is there but is not such a study.
+      ParameterError: if unfinished.jsonl or stability.jsonl is there but is not such a study.
     """
-    (folder / "summary.md").unlink(missing_ok=True)
-    return studies.run(plan(quick), console, folder / "stability.jsonl", COMMAND, {"quick": quick})
+    return studies.run(plan(quick), console, folder / UNFINISHED, COMMAND, {"quick": quick}, finished=folder / FINISHED)
 
 
 def tables(study: Study) -> list[Table]:
@@ -185,11 +184,12 @@ def to_json(study: Study) -> str:
 
 
 def write(study: Study, folder: pathlib.Path) -> None:
-    """Write maps.json, totals.json, the plots of the maps, and at the end summary.md into a folder.
+    """Write stability.jsonl, maps.json, totals.json, the plots of the maps, and summary.md into a folder.
 
     Raises:
       OutputError: if a file cannot be written.
     """
+    study.save(folder / FINISHED)
     maps = ({"name": of.name, "worst": of.error, **of.values} for of in study.of(stability_maps.MAPS))
     dated = study.about | {"date": datetime.date.today().isoformat()}
     files.write(folder / "maps.json", studies.document(dated, stability_maps.MAPS, maps))
