@@ -72,7 +72,7 @@ def test_a_folder_of_others_is_refused_before_the_work(
         (tmp_path / name).write_text("mine")
     assert main([command, "--output", str(tmp_path)]) == 2
     told = f"`mjbeer {command}` did not write what is there (index.html, stories.md, summary.md)"
-    advice = "name another folder, or empty this one"
+    advice = "name a new or an empty folder"
     assert capsys.readouterr().err == f"mjbeer: cannot write to {tmp_path}: {told}: {advice}\n"
     assert sorted(os.listdir(tmp_path)) == names
     assert all((tmp_path / name).read_text() == "mine" for name in names)

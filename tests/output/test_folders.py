@@ -8,8 +8,6 @@ import pytest
 from mjbeer.exceptions import OutputError
 from mjbeer.output import folders
 
-ADVICE = "name another folder, or empty this one"
-
 
 def write(folder: pathlib.Path, text: str, error: BaseException | None = None) -> None:
     """Write two files as a command does, and fail in between if there is an error."""
@@ -74,7 +72,7 @@ def test_a_folder_with_files_of_others_is_refused_and_stays(tmp_path: pathlib.Pa
     with pytest.raises(OutputError) as caught:
         write(tmp_path, "new")
     told = f"cannot write to {tmp_path}: `mjbeer test` did not write what is there (a.html, b.html, c.html and 2 more)"
-    assert str(caught.value) == f"{told}: {ADVICE}"
+    assert str(caught.value) == f"{told}: name a new or an empty folder"
     assert sorted(os.listdir(tmp_path)) == names
 
 
@@ -83,7 +81,8 @@ def test_a_folder_of_another_command_is_refused(tmp_path: pathlib.Path) -> None:
         pass
     with pytest.raises(OutputError) as caught:
         write(tmp_path, "new")
-    assert str(caught.value) == f"cannot write to {tmp_path}: it is of `mjbeer else`: {ADVICE}"
+    advice = "name another folder, or remove this one"
+    assert str(caught.value) == f"cannot write to {tmp_path}: it is of `mjbeer else`: {advice}"
 
 
 def test_a_folder_that_is_a_file_is_refused(tmp_path: pathlib.Path) -> None:

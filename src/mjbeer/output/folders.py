@@ -12,7 +12,6 @@ MARKER = ".mjbeer"
 """Name of the file that says to which command a folder belongs."""
 UNFINISHED = ".unfinished"
 """Name of the folder in it that has the new results until they are whole."""
-_ADVICE = "name another folder, or empty this one"
 _NAMED = 3  # number of files of others that an error names
 
 
@@ -47,12 +46,13 @@ def _claim(folder: pathlib.Path, command: str) -> None:
     if MARKER in names:
         owner = marker.read_text(encoding="utf-8").strip()
         if owner != command:
-            raise OutputError(f"cannot write to {folder}: it is of `{owner}`: {_ADVICE}")
+            raise OutputError(f"cannot write to {folder}: it is of `{owner}`: name another folder, or remove this one")
     elif names:
         others = ", ".join(names[:_NAMED])
         if len(names) > _NAMED:
             others += f" and {len(names) - _NAMED} more"
-        raise OutputError(f"cannot write to {folder}: `{command}` did not write what is there ({others}): {_ADVICE}")
+        refused = f"`{command}` did not write what is there ({others}): name a new or an empty folder"
+        raise OutputError(f"cannot write to {folder}: {refused}")
     else:
         files.write(marker, f"{command}\n")
 
