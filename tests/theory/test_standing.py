@@ -95,7 +95,7 @@ def test_a_thick_liquid_warns() -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"fill": 1.0}, r"fill must be between 0 and 1: a full can has no free surface, got 1\.0"),
+        ({"fill": 1.0}, r"fill must be a fraction between 0 and 1 .*: a full can has no free surface, got 1\.0"),
         ({"fill": 0.001}, r"height of the liquid over the radius must be between 0\.05 and 50"),
         ({"can": Can()}, r"a standing can must have mass and inertia, as Can\.sheet_metal\(\)"),
         ({"modes": 6}, r"modes must be one of 0, 1, \.\.\. 5, got 6"),

@@ -114,6 +114,9 @@ def _outcome(work: Work, varied: Mapping[str, float]) -> tuple[list[float], str]
             values[place] = float(of(run))
         except Exception as error:
             status, reason = NO_VALUE, f"{name}: {_in_a_line(error)}"
+        else:
+            if math.isnan(values[place]):
+                status, reason = NO_VALUE, f"{name}: it is not a number (NaN)"
     if status == WELL and (beyond := (*run.rolling_warnings, *run.liquid_warnings)):
         status, reason = BEYOND, "; ".join(beyond)
     return [*values, trusted, status], reason

@@ -61,7 +61,9 @@ class Standing:
             raise ParameterError(f"a standing can must have mass and inertia, as Can.sheet_metal(), got {self.can!r}")
         fill = require.number("fill", self.fill)
         if not 0 < fill < 1:
-            raise ParameterError(f"fill must be between 0 and 1: a full can has no free surface, got {fill!r}")
+            raise ParameterError(
+                f"fill must be a fraction between 0 and 1 (50 % is 0.5): a full can has no free surface, got {fill!r}"
+            )
         # In thinner films viscosity is everywhere.
         require.within("height of the liquid over the radius", fill * self.can.length / self.can.radius, 0.05, 50.0)
         ratio = self.damping_ratio

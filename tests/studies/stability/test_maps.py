@@ -75,6 +75,7 @@ def test_the_study_is_written(
     told = json.loads(capsys.readouterr().out)
     assert told["failed"] == []
     assert sum(told["totals"]["kinds"]["all"].get(verdict, 0) for verdict in ("right", "refused", "doubted")) == 4
+    assert not (tmp_path / stability_study.UNFINISHED).exists()
     found = Study.load(tmp_path / "stability.jsonl", "mjbeer stability")
     assert {result.group for result in found.results} == {"maps", "cases", "search"}
     assert "All came out as they must." in (tmp_path / "summary.md").read_text()

@@ -30,6 +30,8 @@ from mjbeer.studies.study import Study
 from mjbeer.theory.record import ERROR
 
 COMMAND = "mjbeer stability"
+UNFINISHED, FINISHED = "unfinished.jsonl", "stability.jsonl"
+"""Files that have the study while it is measured, and when it is whole."""
 KNOWN, RANDOM = "cases", "search"
 """The groups of a study with known and with random cases."""
 SIZE = 4 * len(REGIONS)
@@ -174,25 +176,26 @@ def _table_of_cases(results: Sequence[Result]) -> Table:
     return Table("Known cases: runs, and the largest error [rad]", columns, rows, left=(0, 5))
 
 
-def conduct(folder: pathlib.Path, quick: bool, console: Console | None) -> Study:
-    """Measure what the study in `folder` lacks, on all cores, and return the study, kept as stability.jsonl.
+def conduct(folder: pathlib.Path, quick: bool, console: Console) -> Study:
+    """Measure what the study in `folder` lacks, on all cores, and return the study, kept as unfinished.jsonl.
 
-    Its random runs are fresh: the number of the first one is drawn when the study begins, and kept in its settings. The
-    summary of an earlier study is removed first.
+    Its random runs are fresh: the number of the first one is drawn when the study begins, and kept in its settings.
 
     Raises:
       OutputError: if the folder cannot be written to.
       OSError: if the system ends one of the processes.
-      ParameterError: if stability.jsonl is there but is not such a study.
+      ParameterError: if unfinished.jsonl or stability.jsonl is there but is not such a study.
     """
-    (folder / "summary.md").unlink(missing_ok=True)
-    path = folder / "stability.jsonl"
     settings = {"quick": quick, FIRST: secrets.randbelow(_SEEDS)}
-    if path.exists():
-        begun = Study.load(path, COMMAND).settings
-        if begun.get("quick") == quick:
-            settings |= begun
-    return studies.run(plan(quick, settings[FIRST]), console, path, COMMAND, settings)
+    for name in (UNFINISHED, FINISHED):
+        path = folder / name
+        if path.exists():
+            begun = Study.load(path, COMMAND).settings
+            if begun.get("quick") == quick:
+                settings |= begun
+            break
+    checks = plan(quick, settings[FIRST])
+    return studies.run(checks, console, folder / UNFINISHED, COMMAND, settings, finished=folder / FINISHED)
 
 
 def tables(study: Study) -> list[Table]:
@@ -209,11 +212,12 @@ def to_json(study: Study) -> str:
 
 
 def write(study: Study, folder: pathlib.Path) -> None:
-    """Write maps.json, totals.json, the plots of the maps, and at the end summary.md into a folder.
+    """Write stability.jsonl, maps.json, totals.json, the plots of the maps, and summary.md into a folder.
 
     Raises:
       OutputError: if a file cannot be written.
     """
+    study.save(folder / FINISHED)
     maps = ({"name": of.name, "worst": of.error, **of.values} for of in study.of(stability_maps.MAPS))
     dated = study.about | {"date": datetime.date.today().isoformat()}
     files.write(folder / "maps.json", studies.document(dated, stability_maps.MAPS, maps))
