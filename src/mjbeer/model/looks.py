@@ -128,7 +128,7 @@ def beer_column(standing: Standing) -> dict[str, tuple[float, float, float]]:
     narrower than the can. Where there is no such face, as in a nearly full can, the column is all that is seen.
     """
     height, radius, length = standing.height, standing.can.radius, standing.can.length
-    if standing.modes == 0:
+    if standing.moving_modes == 0:
         return {"beer": (0.0, height, radius)}
     pivot, thickness = standing.pivots(1)[0], min(0.2 * radius, height / 4)
     top, ball, dot = height - pivot, min(radius, pivot, length - pivot), 1e-4 * radius
