@@ -3,6 +3,7 @@
 import math
 import pathlib
 import re
+import shutil
 import warnings
 import xml.etree.ElementTree as ET
 from collections.abc import Callable
@@ -237,6 +238,52 @@ def test_all_files_move_as_theory_says() -> None:
     assert [file_fault(OWN, scene.attachment, rolling) for scene, rolling in MECHANICS.values()] == [None] * len(
         MECHANICS
     )
+
+
+@pytest.mark.parametrize("file", ["mechanics/sliding_equality", "mechanics/included"])
+def test_a_file_that_is_edited_between_two_calls_is_read_again(file: str, copy: pathlib.Path) -> None:
+    """Or one that it includes: by runs, and by models, whose warning goes once the file is restored."""
+    scene = sliding(can=METAL)
+    path, mechanics = copy / f"{file}.xml", copy / "mechanics" / "sliding_equality.xml"
+    if path != mechanics:
+        text = mechanics.read_text()
+        (part,) = re.findall(r"<equality>.*</equality>", text, re.DOTALL)
+        path.write_text(f"<mujoco>{part}</mujoco>")
+        mechanics.write_text(text.replace(part, '<include file="included.xml"/>'))
+    right = simulate(scene, 0.02, 1.0, rolling="equality")
+    build(scene, "equality")
+    before = path.read_text()
+    path.write_text(before.replace("</mujoco>", '<equality><joint joint1="swing"/></equality></mujoco>'))
+    with pytest.raises(TemplateError, match=r"sliding_equality\.xml gives \d+ rows of constraints"):
+        simulate(scene, 0.02, 1.0, rolling="equality")
+    with pytest.warns(UntrustedWarning, match=r"sliding_equality\.xml gives \d+ rows of constraints"):
+        build(scene, "equality")
+    path.write_text(before)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        build(scene, "equality")
+    assert simulate(scene, 0.02, 1.0, rolling="equality").phi.tobytes() == right.phi.tobytes()
+
+
+def test_a_mesh_that_is_edited_between_two_calls_is_read_again(copy: pathlib.Path) -> None:
+    before = build(sliding(can=METAL), "equality", visuals=True).nmeshvert
+    shutil.copy(copy / "assets" / "tab.obj", copy / "assets" / "can.obj")
+    assert build(sliding(can=METAL), "equality", visuals=True).nmeshvert != before
+
+
+def test_a_relative_folder_is_that_of_the_call(
+    copy: pathlib.Path, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """After `chdir` it is another one, but not for a run that was made before."""
+    (tmp_path / "other").mkdir()
+    shutil.copytree(copy, tmp_path / "other" / "mjcf")
+    edit(tmp_path / "other" / "mjcf", *EDITS["damped joint"][:3])
+    monkeypatch.chdir(tmp_path)
+    run = simulate(sliding(), 0.02, 1.0, mjcf="mjcf")
+    monkeypatch.chdir("other")
+    assert run.error_estimate < 1e-6
+    with pytest.raises(TemplateError, match=r"other/mjcf/mechanics/sliding_reduced\.xml accelerates phi"):
+        simulate(sliding(), 0.02, 1.0, mjcf="mjcf")
 
 
 def test_a_folder_of_one_s_own_has_looks_of_its_own(copy: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -23,17 +23,22 @@ _ALLOWED = 1e-9
 the can above the origin and a board that is tilted, rounding takes up to 1e-13 in random scenes of all sizes."""
 
 
-@functools.lru_cache(maxsize=64)
 def file_fault(folder: pathlib.Path, attachment: Attachment, rolling: Rolling) -> str | None:
     """Return what is wrong with a mechanics file, None if nothing is: as it stands, and with other numbers in it.
 
     As it stands it must be the paper's can. The other numbers are those of a scene that needs all that is in it.
     """
-    setting = Setting(rolling, mjcf=folder)
+    metal = Can.sheet_metal() if attachment == "sliding" and rolling != "reduced" else Can.massless()
+    paper = Mechanics(Scene(metal, Load.segment(), attachment=attachment), Setting(rolling, mjcf=folder), visuals=True)
+    return _file_fault(paper, mjcf_file.content(paper.path))
+
+
+@functools.lru_cache(maxsize=64)
+def _file_fault(paper: Mechanics, content: tuple[bytes, ...]) -> str | None:
+    """Return what is wrong with the file of the paper's can, which has this content."""
+    attachment, rolling, setting = paper.scene.attachment, paper.setting.rolling, paper.setting
     damping = (Damping(1e-3, 1e-4, 1e-5), 0.5) if attachment == "sliding" else ()
     probe = Scene(Can(0.05, 0.1, 4.0, 6e-3), Load(0.3, 0.02, 1e-4), 0.3, attachment, 5.0, *damping)
-    metal = Can.sheet_metal() if attachment == "sliding" and rolling != "reduced" else Can.massless()
-    paper = Mechanics(Scene(metal, Load.segment(), attachment=attachment), setting, visuals=True)
     path, root = paper.path, mjcf_file.read(paper.path)
     edited = mjcf_file.differences(root, paper.parameters)
     mjcf_file.write(root, Mechanics(probe, setting, visuals=True).parameters, path)

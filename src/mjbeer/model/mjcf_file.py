@@ -21,17 +21,42 @@ Views: TypeAlias = dict[tuple[str, str], list[np.ndarray]]
 
 def read(path: pathlib.Path) -> ET.Element:
     """Return an MJCF file as a tree of its own, with what it includes in place."""
-    root = copy.deepcopy(_parsed(path))
+    root = copy.deepcopy(_parsed(path, _text(path)))
     _include(root, path.parent)
     return root
 
 
-@functools.lru_cache(maxsize=64)
-def _parsed(path: pathlib.Path) -> ET.Element:
+def content(path: pathlib.Path) -> tuple[bytes, ...]:
+    """Return the bytes of an MJCF file and of all that it includes, by which to keep what is made of `read`'s tree.
+
+    To read a file and compare it takes some 20 us. Its time and its size may be those that it had before an edit.
+    """
+    text = _text(path)
+    found = [text]
+    for name in _included(path, text):
+        found.extend(content(path.parent / name))
+    return tuple(found)
+
+
+def _text(path: pathlib.Path) -> bytes:
     try:
-        return ET.parse(path).getroot()
-    except (OSError, ET.ParseError) as error:
+        return path.read_bytes()
+    except OSError as error:
         raise TemplateError(f"{path} is not readable MJCF: {error}") from error
+
+
+@functools.lru_cache(maxsize=64)
+def _parsed(path: pathlib.Path, text: bytes) -> ET.Element:
+    try:
+        return ET.fromstring(text)
+    except ET.ParseError as error:
+        raise TemplateError(f"{path} is not readable MJCF: {error}") from error
+
+
+@functools.lru_cache(maxsize=64)
+def _included(path: pathlib.Path, text: bytes) -> tuple[str, ...]:
+    """Return the names of the files that a file with this text includes itself."""
+    return tuple(element.get("file", "") for element in _parsed(path, text).iter("include"))
 
 
 def _include(root: ET.Element, folder: pathlib.Path) -> None:
