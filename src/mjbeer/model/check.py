@@ -36,7 +36,7 @@ def file_fault(folder: pathlib.Path, attachment: Attachment, rolling: Rolling) -
 @functools.lru_cache(maxsize=64)
 def _file_fault(paper: Mechanics, content: tuple[bytes, ...]) -> str | None:
     """Return what is wrong with the file of the paper's can, which has this content."""
-    attachment, rolling, setting = paper.scene.attachment, paper.setting.rolling, paper.setting
+    attachment, setting = paper.scene.attachment, paper.setting
     damping = (Damping(1e-3, 1e-4, 1e-5), 0.5) if attachment == "sliding" else ()
     probe = Scene(Can(0.05, 0.1, 4.0, 6e-3), Load(0.3, 0.02, 1e-4), 0.3, attachment, 5.0, *damping)
     path, root = paper.path, mjcf_file.read(paper.path)
