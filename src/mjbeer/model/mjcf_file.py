@@ -40,7 +40,8 @@ def content(path: pathlib.Path) -> tuple[bytes, ...]:
 
 def _text(path: pathlib.Path) -> bytes:
     try:
-        return path.read_bytes()
+        with open(path, "rb", buffering=0) as file:
+            return file.read()
     except OSError as error:
         raise TemplateError(f"{path} is not readable MJCF: {error}") from error
 

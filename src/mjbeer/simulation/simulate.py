@@ -263,6 +263,7 @@ def integrate(scene: Scene, phi0: float, phi_dot0: float, setting: Setting, time
     simulator = Simulator.kept(scene, setting)
     solution = simulator.solve(simulator.initial_state(phi0, phi_dot0), along, friction=math.inf)
     motion = to_coordinates(simulator.model, scene, solution.states, along)
+    simulator.check(motion)
     assert solution.record is not None
     return Run(
         **{name: array[samples] for name, array in vars(motion).items()},
