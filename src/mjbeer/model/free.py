@@ -79,6 +79,9 @@ def attach(
     if len(coefficients) > 3 or np.any(coefficients < 0):
         raise ParameterError(f"friction must be 1, 2 or 3 numbers of 0 or more, got {require.format_value(friction)}")
     child, option = _specification(can), parent.option
+    if free:
+        child.body("can").add_freejoint(name="free")
+    mjcf_file.compile_spec(child.copy())
     if option.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL:
         option.cone = child.option.cone
     touching = child.geom("can")
@@ -93,8 +96,6 @@ def attach(
         touching.solref = [mechanics.stiffest(integrator, option.timestep, contact=True), 1]
     reasons = _spoiling_options(option, can) + _mass_bounds(parent.compiler, child)
     child.option, child.visual.map.zfar = parent.option, parent.visual.map.zfar  # MuJoCo warns of what differs
-    if free:
-        child.body("can").add_freejoint(name="free")
     attached = parent.body(body).add_frame(pos=pos, quat=quat).attach_body(child.body("can"), prefix, "")
     if reasons:
         warnings.warn(f"the parent's options spoil the can: {'; '.join(reasons)}", UntrustedWarning, stacklevel=2)

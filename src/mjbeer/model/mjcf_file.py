@@ -11,7 +11,7 @@ from typing import TypeAlias
 import mujoco
 import numpy as np
 
-from mjbeer.exceptions import TemplateError
+from mjbeer.exceptions import TemplateError, UnsupportedError
 
 Parameters: TypeAlias = dict[tuple[str, str], tuple[float, ...] | str]
 """Numbers by element and attribute, as `Mechanics.parameters`."""
@@ -132,6 +132,23 @@ def to_spec(root: ET.Element, path: pathlib.Path) -> mujoco.MjSpec:
         return mujoco.MjSpec.from_string(ET.tostring(root, encoding="unicode"))
     except ValueError as error:
         raise TemplateError(f"{path} is not readable MJCF: {'; '.join(str(error).splitlines())}") from error
+
+
+def compile_spec(spec: mujoco.MjSpec) -> mujoco.MjModel:
+    """Return the model that a specification compiles to.
+
+    Raises:
+      UnsupportedError: if MuJoCo cannot have such a model.
+    """
+    try:
+        return spec.compile()
+    except ValueError as error:
+        raise refused("; ".join(str(error).splitlines())) from error
+
+
+def refused(reason: str) -> UnsupportedError:
+    """Return the error of a scene that MuJoCo cannot have."""
+    return UnsupportedError(f"MuJoCo cannot represent this scene: {reason}")
 
 
 # Where a compiled model has what is written into it; what is not here is the same in all models that are only stepped.
