@@ -227,6 +227,21 @@ def test_an_edit_drives_the_motion_or_is_an_error(name: str, copy: pathlib.Path,
         assert not np.allclose(accelerations(model, scene), accelerations(ordinary, scene), rtol=1e-9), made
 
 
+@pytest.mark.parametrize(("usual", "least", "most"), [(True, 1.0, 10.0), (False, 3e-5, 1e-3)])
+def test_what_diagexact_is_for(usual: bool, least: float, most: float) -> None:
+    """On the roll-down, which is 89 radii long: the file itself slips by 6e-8 radii."""
+    text = (OWN / "mechanics" / "frozen_equality.xml").read_text().replace('diagexact="enable"', "")
+    if usual:
+        text = text.replace('solref="0.0005 1" solimp="0.9999 0.9999"', "")
+    model = mujoco.MjModel.from_xml_string(text)
+    data, slip = mujoco.MjData(model), 0.0
+    mujoco.mj_resetDataKeyframe(model, data, model.key("roll_down").id)
+    while data.time < 2:
+        mujoco.mj_step(model, data)
+        slip = max(slip, abs(data.joint("slide").qpos[0] / METAL.radius - data.joint("roll").qpos[0]))
+    assert least < slip < most
+
+
 def test_a_constraint_that_is_softer_is_stepped_as_it_stands(copy: pathlib.Path) -> None:
     """Its accelerations are those of rolling, and what it creeps shows in the run."""
     edit(copy, "mechanics/frozen_contact", 'solimp="0.9999 0.9999"', 'solimp="0.9 0.9"')

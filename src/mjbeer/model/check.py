@@ -31,7 +31,7 @@ _NO_CHORD = 1e-6
 rounding moves its direction by 1e-10."""
 _SHIPPED = {
     "frozen_contact": "7bb554856f4a037e9126f54c184bda5ecc493d0921542e3b6acddc3b09eaa0a9",
-    "frozen_equality": "10c7969f3880e3fae857a2e27d84285e541033b3a3853f883d3e4b4cd0d0c701",
+    "frozen_equality": "6b195dcc5bd739842db20f267ae5ea12f630c44899aee667b726310d9620fd5e",
     "frozen_reduced": "f8b6d4b3281d43fcd43884397a1d22aacbabadbaddc0e8ecd9a45c0d2ddacee3",
     "sliding_contact": "76728d244dfe95fd0f53eebac4ca31992782aab5eac7a1330fc4a5235e4de5fd",
     "sliding_equality": "5d3d03dd456f29ff115e96aa04c17909542066612767552a608b0c847f3aadee",
