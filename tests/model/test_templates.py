@@ -295,6 +295,13 @@ def test_an_edit_that_acts_late_is_an_error(name: str, copy: pathlib.Path) -> No
             simulate(scene, duration, 1.0, rolling=rolling, times=times)
 
 
+def test_an_edit_that_changes_little_is_an_error(copy: pathlib.Path) -> None:
+    """A run may claim an error of 1e-10 rad: an edit must not be ten times that."""
+    edit(copy, EQUALITY, '<body name="can"', '<body name="can" gravcomp="1e-8"')
+    with pytest.raises(TemplateError, match="accelerates phi"):
+        simulate(sliding(can=METAL), 1.0, 1.0, rolling="equality")
+
+
 def test_the_shipped_files_are_those_whose_runs_need_no_check() -> None:
     """If this fails after an edit: once the tests of this module pass, give `check` the new digest."""
     for name, (scene, rolling) in MECHANICS.items():

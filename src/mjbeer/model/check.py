@@ -20,15 +20,13 @@ from mjbeer.theory.can import Can, Damping, Load
 from mjbeer.theory.equations import Coordinates, accelerations, select_samples
 from mjbeer.theory.scene import Attachment, Scene
 
-_ALLOWED = 1e-9
-"""Largest difference of phi_ddot from theory's that a model may have, over the accelerations at those rates. With
-the can above the origin and a board that is tilted, rounding takes up to 1e-13 in random scenes of all sizes."""
+_ALLOWED = 1e-13
+"""Largest difference of phi_ddot from theory's that a model may have, over the accelerations at those rates and over
+what rounding makes of them, see `model_fault`. In random scenes of all sizes, at 448 starts and in 408 runs, rounding
+takes up to 5e-15 of that."""
 _STATES = 1000
 """Number of states of a run, evenly spread, at which an edited file is checked, if it has more samples and checkpoints:
-it takes some 10 ms. What stops a can, or pushes it back, acts for longer than a thousandth of most runs."""
-_NO_CHORD = 1e-6
-"""Least |cos(phi/2)| at which a frozen load is checked: the chord tendon has no length at phi = pi, and so close to it
-rounding moves its direction by 1e-10."""
+it takes some 10 ms, or 20 in contact. What stops a can, or pushes it back, acts for longer than a thousandth of most runs."""
 _SHIPPED = {
     "frozen_contact": "7bb554856f4a037e9126f54c184bda5ecc493d0921542e3b6acddc3b09eaa0a9",
     "frozen_equality": "6b195dcc5bd739842db20f267ae5ea12f630c44899aee667b726310d9620fd5e",
@@ -94,16 +92,11 @@ def check_run(mechanics: Mechanics, motion: Coordinates) -> None:
     chosen = set(np.linspace(0, last, min(last + 1, _STATES)).astype(int).tolist())
     for values in (motion.u, motion.phi, motion.u_dot, motion.phi_dot):
         chosen |= {int(values.argmin()), int(values.argmax())}
-    states = sorted(chosen)
-    if mechanics.scene.oscillator.chord > 0 and mechanics.setting.rolling == "reduced":
-        states = [state for state in states if abs(math.cos(motion.phi[state] / 2)) > _NO_CHORD]
-    if not states:
-        return
     root = mjcf_file.read(mechanics.path)
     mjcf_file.write(root, mechanics.parameters, mechanics.path)
     mjcf_file.remove(root, "keyframe")  # of the file's own scene
     model = _compiled(root, mechanics.path)
-    if fault := model_fault(model, mechanics.scene, mechanics.setting, select_samples(motion, states)):
+    if fault := model_fault(model, mechanics.scene, mechanics.setting, select_samples(motion, sorted(chosen))):
         raise TemplateError(f"{mechanics.path} {fault}, in a state of this run")
 
 
@@ -144,23 +137,32 @@ def model_fault(model: mujoco.MjModel, scene: Scene, setting: Setting, motion: C
     # The rates of all joints in motions that roll without slipping: of the can, and of the load; or of both as one.
     can, load = np.eye(2) if sliding else np.ones((2, 1))
     rolls = to_states(model, rolling_coordinates(radius, 0 * can, radius * can, 0 * load, load))[:, model.nq :]
-    found, data, inertia = [], mujoco.MjData(model), np.empty((model.nv, model.nv))
+    data = mujoco.MjData(model)
+    inertias, torques = np.empty((len(states), model.nv, model.nv)), np.empty((len(states), model.nv))
     touching = set(model.pair("rolling").geom1) | set(model.pair("rolling").geom2) if rolling == "contact" else set()
     with quiet():
-        for state in states:
-            data.qpos[:], data.qvel[:] = np.split(state, 2)
+        for state, inertia, torque in zip(states, inertias, torques, strict=True):
+            data.qpos[:] = state[: model.nq]
+            data.qvel[:] = state[model.nq :]
             mujoco.mj_forward(model, data)
             if (data.ne, data.ncon > 0, data.nf + data.nl) != (int(rolling == "equality"), rolling == "contact", 0):
                 return f"gives {data.nefc} rows of constraints, not only those of rolling"
             if not touching.issuperset(data.contact.geom.ravel()):
                 return "lets other geoms touch than the can and the incline"
             mujoco.mj_fullM(model, data, inertia)
-            # MuJoCo's own qacc is that of a soft constraint, which is allowed; these are without any slip.
-            found.append(np.linalg.solve(rolls @ inertia @ rolls.T, rolls @ data.qfrc_smooth) @ rolls)
+            torque[:] = data.qfrc_smooth
+    # MuJoCo's own qacc is that of a soft constraint, which is allowed; these are without any slip.
+    found = np.linalg.solve(rolls @ inertias @ rolls.T, (torques @ rolls.T)[..., None])[..., 0] @ rolls
     slopes = np.concatenate([states[:, model.nq :], found], axis=1)
     _, right = accelerations(scene, phi, phi_dot, radius * roll_dot)
-    difference = np.abs(to_coordinates(model, scene, slopes, phi).phi_dot - right).max()
+    difference = np.abs(to_coordinates(model, scene, slopes, phi).phi_dot - right)
     size = np.abs(right).max() + rate**2
-    if not difference <= _ALLOWED * size:
-        return f"accelerates phi by up to {difference:.3g} rad/s^2 (of {size:.3g}) otherwise than theory"
+    # MuJoCo computes torques from places in the world: the farther the can is from the origin, and the heavier beside
+    # the inertia that they turn, the more digits of them are lost.
+    rounding = (1 + np.abs(roll)) * (1 + scene.mass * radius**2 / scene.oscillator.inertia(phi))
+    if scene.oscillator.chord > 0 and rolling == "reduced":
+        # The direction of the chord tendon, which has no length at phi = pi.
+        rounding /= np.abs(np.cos(phi / 2))
+    if not np.all(difference <= _ALLOWED * size * rounding):
+        return f"accelerates phi by up to {difference.max():.3g} rad/s^2 (of {size:.3g}) otherwise than theory"
     return "makes MuJoCo warn of a state of rolling" if np.any(data.warning.number) else None
