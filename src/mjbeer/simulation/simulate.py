@@ -288,6 +288,7 @@ def integrate(scene: Scene, phi0: float, phi_dot0: float, setting: Setting, time
     simulator = Simulator.kept(scene, stepped)
     solution = simulator.solve(simulator.initial_state(near_phi0, phi_dot0), along, friction=math.inf)
     motion = to_coordinates(simulator.model, scene, solution.states, along)
+    simulator.check(motion)
     assert solution.record is not None
     arrays = {name: array[samples] for name, array in vars(motion).items()}
     if rounding > 0:

@@ -8,11 +8,13 @@ import mujoco
 import numpy as np
 
 from mjbeer.model.build import compiled_model, write_numbers
+from mjbeer.model.check import check_run, is_edited
 from mjbeer.model.joints import initial_state
 from mjbeer.model.mechanics import Mechanics, Structure
 from mjbeer.model.mjcf_file import compiled_views
 from mjbeer.model.setting import OWN, Setting
 from mjbeer.simulation.fixed_step import Recorder, Solution, states_after
+from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.scene import Scene
 
 if TYPE_CHECKING:
@@ -41,6 +43,7 @@ class Simulator:
         self.data = mujoco.MjData(self.model)
         self._views = compiled_views(self.model, mechanics.parameters)
         self._written: Mechanics | None = None
+        self._edited = is_edited(mechanics)
         self._dynamics: Dynamics | None = None  # of a model that one of mjbeer's own integrators has stepped
         self._write(mechanics)
 
@@ -69,6 +72,15 @@ class Simulator:
     def initial_state(self, phi0: float, phi_dot0: float) -> np.ndarray:
         """Return the state of a start at `phi0` [rad] with `phi_dot0` [rad/s], shape (nq + nv,)."""
         return initial_state(self.model, self.scene, phi0, phi_dot0)
+
+    def check(self, motion: Coordinates) -> None:
+        """Compare the MJCF with theory at the states of a run of this scene, unless it is mjbeer's own.
+
+        Raises:
+          TemplateError: if it does not move as theory says there.
+        """
+        if self._edited:
+            check_run(_mechanics(self.scene, self.setting), motion)
 
     def solve(self, start: np.ndarray, times: np.ndarray, friction: float | None = None) -> Solution:
         """Return the states at `times` [s] of the motion from `start`; MuJoCo's integrators use the nearest timesteps.

@@ -129,7 +129,9 @@ def test_a_study_draws_new_runs_and_an_interrupted_one_goes_on_with_its_own(
     monkeypatch.setattr(secrets, "randbelow", lambda _: next(numbers))
     monkeypatch.setattr(stability_study, "plan", lambda quick, first: begun.append((quick, first)) or [])
     for quick in (True, True, False, False):
-        found = stability_study.conduct(tmp_path, quick, None)
+        folder = tmp_path / str(quick)
+        folder.mkdir(exist_ok=True)
+        found = stability_study.conduct(folder, quick, None)
         assert found.settings == {"quick": quick, "first random run": begun[-1][1]}
     assert begun == [(True, 100), (True, 100), (False, 120), (False, 120)]
 
