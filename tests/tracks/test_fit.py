@@ -116,6 +116,18 @@ def test_the_plot_and_the_command_show_the_fit(tmp_path: pathlib.Path, capsys: p
     assert np.std(result.plot()[1].get_lines()[0].get_ydata()) == pytest.approx(1e3 * result.noise["along"], rel=0.05)
 
 
+@pytest.mark.parametrize("suffix", ["svg", "mp4"])
+def test_a_file_that_cannot_be_written_is_refused_before_the_fit(
+    suffix: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    fitted = mock.Mock(side_effect=AssertionError("the fit began"))
+    monkeypatch.setattr("mjbeer.tracks.fit.fit", fitted)
+    track, table = filmed(ICE), tmp_path / "can.csv"
+    np.savetxt(table, np.stack([track.time, track.along], axis=1), header="t,x", comments="", delimiter=",")
+    assert main(["fit", str(table), "frozen", "--output", str(tmp_path / "nowhere" / f"x.{suffix}")]) == 2
+    assert f"there is no folder {tmp_path / 'nowhere'}" in capsys.readouterr().err.replace("\n", " ")
+
+
 def test_the_film_has_the_tracked_places_as_marks(monkeypatch: pytest.MonkeyPatch) -> None:
     """Where the model is the track, they are where the can is."""
     film = mock.Mock()
