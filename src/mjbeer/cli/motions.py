@@ -218,18 +218,18 @@ def fit(given: Namespace) -> None:
     track = read_track(given.file, dict(each.partition("=")[::2] for each in given.columns), given.rate)
     with warnings.catch_warnings(action="ignore", category=LiquidWarning):  # of a guess
         guess = scene(given)
-    found = fit(track, guess, given.free or ["incline"], dict(given.known), phi0, given.bend)
-    if given.json:
-        told = {"values": found.values, "errors": found.errors, "noise": found.noise, "warnings": found.warnings}
-        terminal.write(to_json(told, indent=2))
-    else:
-        terminal.write("\n".join([found.title, *found.lines()]) + "\n")
-        for each in found.warnings:
-            say(f"note: {each}", "yellow")
-    if output and output.suffix == ".mp4":
-        found.video(output)
-    elif output:
-        with files.atomic_write(output) as temporary:
+    with files.atomic_write(output) if output else nullcontext() as temporary:
+        found = fit(track, guess, given.free or ["incline"], dict(given.known), phi0, given.bend)
+        if given.json:
+            told = {"values": found.values, "errors": found.errors, "noise": found.noise, "warnings": found.warnings}
+            terminal.write(to_json(told, indent=2))
+        else:
+            terminal.write("\n".join([found.title, *found.lines()]) + "\n")
+            for each in found.warnings:
+                say(f"note: {each}", "yellow")
+        if temporary and temporary.suffix == ".mp4":
+            found.video(temporary)
+        elif temporary:
             figure: Any = found.plot()[0].figure
             figure.savefig(temporary, facecolor="white", dpi=150)
     if output:
