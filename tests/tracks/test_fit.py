@@ -27,7 +27,9 @@ def filmed(scene: Scene, phi0: float | None = None, noise: float = 1e-3, seed: i
     """The track of a can that is let go at 17.4 s, by exact theory, with a gap; the camera runs from 17 s on."""
     rng = np.random.default_rng(seed)
     time = np.arange(round(60 * seconds)) / 60
-    way = exact(scene, np.maximum(time - 0.4, 0.0), -scene.incline if phi0 is None else phi0).distance
+    rolls = time > 0.4
+    way = np.zeros(len(time))
+    way[rolls] = exact(scene, time[rolls] - 0.4, -scene.incline if phi0 is None else phi0).distance
     kept = (time < 1.5) | (time > 1.7)
     return Track(17 + time[kept], 0.1 + way[kept] + noise * rng.standard_normal(kept.sum()))
 
@@ -108,7 +110,10 @@ def test_tracked_angles_give_the_scale_and_the_start() -> None:
     """The mark turns by the way over the radius; the load is let go 0.3 rad beyond the level."""
     start, true = 0.3 - OIL.incline, filmed(OIL, 0.3 - OIL.incline, noise=0.0)
     noise = 1e-3 * np.random.default_rng(1).standard_normal((3, len(true.time)))
-    phi = exact(OIL, np.maximum(true.time - 17.4, 0.0), start).phi + 10 * noise[2]
+    rolls = true.time > 17.4
+    phi = np.full(len(true.time), start)
+    phi[rolls] = exact(OIL, true.time[rolls] - 17.4, start).phi
+    phi += 10 * noise[2]
     roll = 0.7 + (true.along - 0.1) / 0.033 + noise[1] / 0.033
     result = found(Track(true.time, 1.02 * true.along + noise[0], roll, phi), OIL, "incline", "damping", phi0="free")
     for name, truth in {"scale": 1.02, "turned": 0.7, "incline": OIL.incline, "phi0": start}.items():
