@@ -1,11 +1,13 @@
 """The page of two racing cans: its physics is that of exact theory, and it needs nothing but a browser."""
 
+import html
 import json
 import math
 import pathlib
 import re
 import shutil
 import subprocess
+import urllib.parse
 from functools import partial
 from typing import Any
 
@@ -13,15 +15,20 @@ import numpy as np
 import pytest
 import quickjs
 
-from mjbeer import Can, Scene, exact, frozen, liquid, sliding
+from mjbeer import Can, Scene, exact, frozen, liquid, read_track, sliding
 from mjbeer.theory import can
 from mjbeer.theory.liquid import LIQUIDS
 from mjbeer.theory.scene import GRAVITY
+from mjbeer.tracks.track import _COLUMNS, _COMMA, _GROUPED, _POINT, _TITLE
+from tests.support.tables import TABLES, THOUSANDS, UNCLEAR
 
 TEXT = pathlib.Path(__file__).parents[1].joinpath("docs", "live.html").read_text(encoding="utf-8")
 PHYSICS = TEXT.split('<script id="physics">')[1].split("</script>")[0]
 TRACK = "const DEGREE = Math.PI / 180;" + TEXT.split("// A track:")[1].partition("\n")[2].split("function take(")[0]
+SYNTHETIC = pathlib.Path(__file__).parents[1].joinpath("examples", "synthetic_track.csv").read_text(encoding="utf-8")
 INSIDE = ["no friction", "ice", *LIQUIDS]
+LECTURE = pathlib.Path(__file__).parents[1].joinpath("docs", "lecture.md").read_text(encoding="utf-8")
+ICE = 917.0  # its density [kg/m^3], as in the film that the lecture shows
 # Of phi and of the distance over the radius [rad]: 8e-10 was measured, and 6e-6 if no step ends at the corners of |w|.
 AGREES = 1e-8
 
@@ -32,7 +39,8 @@ def script(code: str, given: str = PHYSICS) -> Any:
 
 
 def scene_of(setting: dict[str, Any]) -> Scene:
-    make = {"no friction": sliding, "ice": frozen}.get(setting["inside"], partial(liquid, setting["inside"]))
+    frozen_water = partial(frozen, density=ICE)
+    make = {"no friction": sliding, "ice": frozen_water}.get(setting["inside"], partial(liquid, setting["inside"]))
     return make(setting["incline"], setting["fill"], Can.sheet_metal() if setting["metal"] else Can.massless())
 
 
@@ -87,6 +95,23 @@ def test_its_constants_are_those_of_theory() -> None:
     assert found[1:] == [can.RADIUS, can.LENGTH, can.THICKNESS * can.ALUMINIUM, GRAVITY, can.BEER]
 
 
+@pytest.mark.parametrize(("can", "inside"), [("a", "honey"), ("b", "ice")])
+def test_honey_and_ice_take_the_times_that_the_lecture_has(can: str, inside: str) -> None:
+    """By the link that the page itself offers: its cans are full to 75 %, and it shows them over one metre."""
+    link = re.search(r'href="#([^"]*)">Honey and ice<', TEXT)
+    told = re.search(rf"{inside} ([\d.]+) s", LECTURE)
+    assert link
+    assert told
+    given = dict(urllib.parse.parse_qsl(html.unescape(link[1])))
+    assert given[f"{can}-inside"] == inside
+    setting: dict[str, Any] = {"inside": inside, "metal": True, "fill": float(given[f"{can}-fill"]) / 100}
+    setting |= {"incline": math.radians(float(given["incline"])), "phi0": math.radians(float(given[f"{can}-phi0"]))}
+    half_a_digit = 0.5 * 10.0 ** -len(told[1].partition(".")[2])
+    around = [float(told[1]) - half_a_digit, float(told[1]) + half_a_digit]
+    before, after = script(f"motion({json.dumps(setting)}, {around}).distance")
+    assert before < 1 < after
+
+
 @pytest.mark.parametrize(
     "wrong", [{"inside": "tea"}, {"inside": "water", "fill": 1}, {"fill": 0}, {"phi0": None}, {"times": [-1]}]
 )
@@ -97,13 +122,12 @@ def test_what_is_not_allowed_is_refused(wrong: dict[str, Any]) -> None:
 
 
 def test_it_is_one_small_file_that_asks_for_nothing() -> None:
-    assert TEXT.count("\n") <= 450
     assert len(TEXT.encode()) <= 60_000
     assert "default-src 'none'" in TEXT
 
 
 def test_a_track_is_read_in_its_units_and_with_decimal_commas() -> None:
-    table = "Time (ms);x;along [cm];phi [°]\r\n0;;5,0;90\r\n500;;7,5;45\r\n"
+    table = "Time (ms);note;along [cm];phi [°]\r\n0;;5,0;90\r\n500;;7,5;45\r\n"
     found = script(f"readTrack({json.dumps(table)})", TRACK)
     assert found["distance"] == [[0, 0], [0.5, pytest.approx(0.025)]]
     assert found["phi"] == [[0, 90], [0.5, 45]]
@@ -112,16 +136,43 @@ def test_a_track_is_read_in_its_units_and_with_decimal_commas() -> None:
 @pytest.mark.parametrize(
     ("table", "sentence"),
     [
-        ("", "its first line must name time, and along or phi; it has nothing"),
-        ("time,x\n0,1\n", "its first line must name time, and along or phi; it has “time”, “x”"),
-        ("time,along\n0,0\n1,two\n", "line 3 has “two” in the column “along”, where a number must be"),
+        ("", "the line above its numbers must name time, and x or phi; it has nothing"),
+        ("time,z\n0,1\n", "the line above its numbers must name time, and x or phi; it has “time”, “z”"),
+        ("time,along\n0,0\n1,two\n", "line 3, column 2 has “two”, where a number must be"),
+        ("time,along,x\n0,0,1\n", "“along” and “x” mean the same"),
         ("time,along [ft]\n0,0\n1,2\n", "the unit of “along [ft]” must be one of m, cm, mm"),
+        ("t,x,y\n0,0,0\n1,1,0.1\n2,2,0\n", "x and y are 47 mm off a straight line"),
         ("t\tphi\n1\t0\n\n1\t2\n", "the time in line 4 must be 0 or more, and after that of the line before"),
     ],
 )
 def test_a_bad_track_gets_a_sentence(table: str, sentence: str) -> None:
     with pytest.raises(quickjs.JSException, match=re.escape(sentence)):
         script(f"readTrack({json.dumps(table)})", TRACK)
+
+
+@pytest.mark.parametrize("text", [*TABLES.values(), *(text for text, _ in THOUSANDS.values()), SYNTHETIC])
+def test_it_reads_a_track_as_read_track_does(text: str, tmp_path: pathlib.Path) -> None:
+    (path := tmp_path / "can.txt").write_text(text, encoding="utf-8")
+    track = read_track(path)
+    found = np.array(script(f"readTrack({json.dumps(text)})", TRACK)["distance"])
+    assert found[:, 0] == pytest.approx(track.time, rel=1e-12)
+    assert found[:, 1] == pytest.approx(track.along - track.along[0], abs=1e-12)
+
+
+@pytest.mark.parametrize(("place", "text"), [(each.split(":")[0], text) for each, text in UNCLEAR.items()])
+def test_it_refuses_where_read_track_does(place: str, text: str) -> None:
+    line, column = place.split(", ")
+    with pytest.raises(quickjs.JSException, match=rf"{line}(, {column})? has"):
+        script(f"readTrack({json.dumps(text)})", TRACK)
+
+
+def test_its_names_and_units_are_those_of_read_track() -> None:
+    found = script("COLUMNS", TRACK)
+    assert {name: (units, usual) for name, (units, usual) in found.items()} == {name: _COLUMNS[name] for name in found}
+    assert script("[TITLE, POINT, COMMA, GROUPED].map(each => each.source)", TRACK) == [
+        f"^{_TITLE.pattern}",
+        *(f"^{form.pattern}$" for form in (_POINT, _COMMA, _GROUPED)),
+    ]
 
 
 # A headless browser may draw no frame: so each is asked for.

@@ -23,7 +23,17 @@ from mjbeer.studies import predictions
 from mjbeer.studies.benchmark import benchmark_tables
 from mjbeer.studies.benchmark.points import SHIPPED, Benchmark
 from mjbeer.studies.stability import stability_maps, stability_study
-from mjbeer.studies.stability.judge import BOTH, NOBODY, SERIES, SILENT, THEORY, VERDICTS
+from mjbeer.studies.stability.judge import (
+    BOTH,
+    DOUBTED,
+    NOBODY,
+    REFUSED,
+    RIGHT,
+    SERIES,
+    SILENT,
+    THEORY,
+    VERDICTS,
+)
 from mjbeer.studies.validation.validate import checks
 from mjbeer.theory.liquid import LIQUIDS, NAMES, centrifugal_ratio, liquid_in
 from mjbeer.theory.scene import frozen
@@ -83,10 +93,10 @@ def holds() -> str:
             ),
             (
                 "**stability**",
-                f"in gravity the longest stable timesteps are within {border_error():.2g} % of linear theory; of "
-                f"{ended(random):,} random runs {random.get(SILENT, 0)} were wrong without saying so (of such runs "
-                f"fewer than {100 * (stability_study.bound(random) or 1):.1g} % are, at 95 % confidence), and "
-                f"{alone(random):,} of them were judged by one theory alone ([stability](docs/stability.md))",
+                f"in gravity the longest stable timesteps are within {border_error():.2g} % of linear theory; "
+                f"{trusted(random):,} of {ended(random):,} new random runs were trusted, and {wrong_of(random)}; "
+                f"{random.get(stability_study.NEEDLESS, 0):,} others were doubted although they were right, and "
+                f"{alone(random):,} were judged by one theory alone ([stability](docs/stability.md))",
             ),
             (
                 "**the paper**",
@@ -231,6 +241,20 @@ def ended(count: dict[str, int]) -> int:
     return sum(count.get(verdict, 0) for verdict in VERDICTS)
 
 
+def trusted(count: dict[str, int]) -> int:
+    """Return the number of runs that did not doubt themselves."""
+    return count.get(RIGHT, 0) + count.get(SILENT, 0)
+
+
+def wrong_of(count: dict[str, int]) -> str:
+    """Return how many of the trusted runs were wrong, and how many may be."""
+    share = stability_study.bound(count)
+    found = f"{count.get(SILENT, 0)} of these were wrong"
+    if share is None:
+        return found
+    return f"{found} (with 95 % confidence at most {stability_study.rounded_up(100 * share)} % of trusted runs are)"
+
+
 def alone(count: dict[str, int]) -> int:
     """Return the number of runs that one theory alone judged."""
     return sum(count.get(judge, 0) for judge in (THEORY, SERIES))
@@ -239,22 +263,23 @@ def alone(count: dict[str, int]) -> int:
 def kinds() -> str:
     """How the random runs ended, by kind of model, and what judged them."""
     shown = next(each for each in stability_study.search_tables(COUNTS) if "by model" in each.title)
-    left_out = NOBODY, BOTH, SERIES, stability_study.NEEDLESS, stability_study.ABOVE, stability_study.TWICE
+    left_out = NOBODY, BOTH, SERIES, stability_study.ABOVE, stability_study.TWICE
     columns = [at for at, name in enumerate(shown.columns) if name not in left_out]
     return table(tuple(shown.columns[at] for at in columns), [tuple(row[at] for at in columns) for row in shown.rows])
 
 
 def honesty() -> str:
-    """How many runs were silent, and what that allows; how often a run said too little of its error."""
+    """How many runs were silent, and what that allows; how often a run doubted itself, or its error, wrongly."""
     found, known = COUNTS["kinds"]["all"], COUNTS["known"]
-    share = stability_study.bound(found)
-    allows = "" if share is None else f", so that with 95 % confidence fewer than {100 * share:.1g} % are"
-    silent, above, twice = (found.get(name, 0) for name in (SILENT, stability_study.ABOVE, stability_study.TWICE))
+    first = COUNTS["settings"][stability_study.FIRST]
+    needless, above, twice = stability_study.NEEDLESS, stability_study.ABOVE, stability_study.TWICE
     return prose(
-        f"Of {ended(found):,} random runs {silent} were wrong without saying so{allows}. {alone(found):,} were judged "
-        f"by one theory alone, and {found.get(NOBODY, 0)} by none. Of all trusted runs {above} had a larger error than "
-        f"its estimate, and {twice} more than twice as large a one. Of {ended(known):,} runs of known cases "
-        f"{known.get(SILENT, 0)} were silent."
+        f"{ended(found):,} random runs, with the numbers from {first} on, ended like this: {trusted(found):,} were "
+        f"trusted, and {wrong_of(found)}. {found.get(DOUBTED, 0):,} were doubted, {found.get(needless, 0):,} of them "
+        f"although their samples were right, and {found.get(REFUSED, 0):,} were refused. {alone(found):,} were judged "
+        f"by one theory alone, and {found.get(NOBODY, 0)} by none. {found.get(above, 0)} of the trusted runs had an "
+        f"error above its estimate, {found.get(twice, 0)} of them above twice the estimate. Of {ended(known):,} runs "
+        f"of known cases {trusted(known):,} were trusted, and {known.get(SILENT, 0)} of these were wrong."
     )
 
 

@@ -70,11 +70,13 @@ class AbsentError(Exception):
     """A tool cannot be had here."""
 
 
+OLDEST = "3.3.4"
+"""The oldest MuJoCo that loads portable exports: those before do not know the camera that a viewer begins with."""
 # MJX 3.3 calls a function of JAX's with an argument that JAX has not had since; MJX's JAX is that of its time.
 _MJX = "mujoco==3.3.*", "mujoco-mjx==3.3.*", "jax==0.8.0", "jaxlib==0.8.0"
 OTHERS = (
     Other("MuJoCo 4", (), "mujoco"),
-    Other("MuJoCo 3.3", ("mujoco==3.3.*",), "mujoco"),
+    Other(f"MuJoCo {OLDEST}", (f"mujoco=={OLDEST}",), "mujoco"),
     Other("MJX 3.3", _MJX, "mjx"),
     Other("MJX 3.3 single", _MJX, "mjx-single", precise=False),
     Other("mujoco_warp 4", ("mujoco==4.0.*", "mujoco-warp==4.0.*"), "warp", precise=False),

@@ -45,6 +45,15 @@ def within(name: str, value: Any, lowest: float, highest: float, unit: str = "",
     return result
 
 
+def fill(value: Any) -> float:
+    """Return the height of a load over the can's diameter as a float; half is 0.5, and not 50."""
+    lowest, highest = FILL
+    if not lowest <= (result := number("fill", value)) <= highest:
+        allowed = f"a fraction between {lowest:g} and {highest:g} (50 % is 0.5)"
+        raise _refused(f"fill must be {allowed}", "", value)
+    return result
+
+
 def positive(name: str, value: Any, unit: str = "") -> float:
     """Return `value` as a finite float greater than 0."""
     if not (result := number(name, value, unit)) > 0:

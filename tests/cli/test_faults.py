@@ -9,6 +9,10 @@ import sys
 import pytest
 
 from mjbeer.cli.app import main
+from mjbeer.output import files
+from mjbeer.studies.benchmark.points import SHIPPED, Benchmark
+from mjbeer.studies.study import Study
+from tests.support import stubs
 from tests.support.processes import run
 
 pytestmark = pytest.mark.slow
@@ -56,6 +60,59 @@ def test_what_cannot_be_written_is_known_before_the_work(
     assert not os.listdir(tmp_path)
 
 
+@pytest.mark.parametrize("command", FOLDERS)
+def test_a_folder_of_others_is_refused_before_the_work(
+    command: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for work in ("report.page.write", "studies.benchmark.timing.conduct", "studies.stability.stability_study.conduct"):
+        monkeypatch.setattr(f"mjbeer.{work}", lambda *_: pytest.fail("the work was begun"))
+    monkeypatch.setattr("mjbeer.paper.stories.write", lambda *_: pytest.fail("the work was begun"))
+    names = ["index.html", "stories.md", "summary.md"]
+    for name in names:
+        (tmp_path / name).write_text("mine")
+    assert main([command, "--output", str(tmp_path)]) == 2
+    told = f"`mjbeer {command}` did not write what is there (index.html, stories.md, summary.md)"
+    advice = "name a new or an empty folder"
+    assert capsys.readouterr().err == f"mjbeer: cannot write to {tmp_path}: {told}: {advice}\n"
+    assert sorted(os.listdir(tmp_path)) == names
+    assert all((tmp_path / name).read_text() == "mine" for name in names)
+
+
+@pytest.mark.parametrize(
+    ("command", "last"),
+    [("report", "index.html"), ("benchmark", "summary.md"), ("stability", "summary.md"), ("paper", "stories.md")],
+)
+def test_old_results_stay_if_a_command_is_interrupted_at_its_end(
+    command: str, last: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """When all but the last file are written. Then it is run again, and writes them all."""
+    stubs.validate(monkeypatch, first=1e-5)
+    stubs.draw(monkeypatch)
+    study = Study("mjbeer stability", {"quick": True}, {})
+    monkeypatch.setattr("mjbeer.studies.benchmark.timing.conduct", lambda *_: Benchmark.load(SHIPPED))
+    monkeypatch.setattr("mjbeer.studies.stability.stability_study.conduct", lambda *_: study)
+    monkeypatch.setattr("mjbeer.studies.stability.stability_maps.figures", lambda _: {})
+    words = [command, "--output", str(tmp_path)]
+    assert main(words) == 0
+    names = [path for path in tmp_path.iterdir() if not path.name.startswith(".")]
+    assert tmp_path / last in names
+    for path in names:
+        path.write_text("old")
+    write = files.write
+
+    def interrupted(path: pathlib.Path, text: str) -> None:
+        if path.name == last:
+            raise KeyboardInterrupt
+        write(path, text)
+
+    with monkeypatch.context() as patched:
+        patched.setattr(files, "write", interrupted)
+        assert main(words) == 130
+    assert [path.read_text() for path in names] == ["old"] * len(names)
+    assert main(words) == 0
+    assert "old" not in [path.read_text() for path in names]
+
+
 @linux
 def test_a_full_standard_output() -> None:
     with open("/dev/full", "w") as full:
@@ -63,6 +120,15 @@ def test_a_full_standard_output() -> None:
     assert status == 2
     assert err.count("\n") == 1
     assert "No space left on device" in err
+
+
+def test_a_closed_standard_output(tmp_path: pathlib.Path) -> None:
+    """It is known before the work, of which nothing is left."""
+    target = tmp_path / "motion.csv"
+    words = ["simulate", *FROZEN, "--output", str(target)]
+    status, _, err = run(words, preexec_fn=lambda: os.close(1))
+    assert (status, err) == (2, "mjbeer: cannot write to standard output: it is closed\n")
+    assert not target.exists()
 
 
 @pytest.mark.parametrize("words", [(), ("--output", "-", "--duration", "2")])

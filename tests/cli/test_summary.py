@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mjbeer import exact, frozen, hoop, liquid, simulate, sliding
+from mjbeer import Scene, exact, frozen, hoop, liquid, simulate, sliding
 from mjbeer.cli.motions import Summary
-from mjbeer.simulation.simulate import Run
+from mjbeer.simulation.run import Run
 
 # Let go with the beer on top, the can hops at 0.834 s; before, rolling needs ever more friction, 1.839 within 0.8 s.
 START, SHORT, LONG = math.pi, 0.8, 0.9
@@ -45,6 +45,13 @@ def test_text_and_json_have_what_a_run_says_about_itself() -> None:
     text = lines(run, 0.05)
     assert text["phi at the end"] == f"{math.degrees(run.phi[-1]):.9g} degrees"
     assert text["estimated error of phi and u/a"] == f"{told['estimated error of phi and u/a [rad]']:.2e} rad"
+
+
+@pytest.mark.parametrize(("scene", "takes"), [(frozen(), False), (liquid(), True), (sliding(drag=1e-3), True)])
+def test_what_damping_and_drag_take_is_no_drift(scene: Scene, takes: bool) -> None:
+    run = simulate(scene, 0.5, 1.0, tolerance=1e-6)
+    assert ("energy drift" not in lines(run)) is takes
+    assert (content(run)["energy drift"] is None) is takes
 
 
 @pytest.mark.parametrize(

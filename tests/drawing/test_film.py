@@ -10,7 +10,7 @@ import pytest
 
 from mjbeer import Scene, Trajectory, exact, frozen, simulate, sliding
 from mjbeer.drawing.camera import View, follow, on_incline, scale
-from mjbeer.drawing.film import MotionFilm
+from mjbeer.drawing.film import Film, MotionFilm, Race, Runner
 from mjbeer.drawing.overlay import HEADER, Look
 from mjbeer.drawing.scene import Display, Painter, coordinates
 from mjbeer.drawing.sheet import Sheet
@@ -90,6 +90,29 @@ def test_the_mark_turns_with_the_can(make: Callable[[float], Scene]) -> None:
         marks = [seen(0, side * 1.03, roll + scene.incline) for side in (1, -1)]
         reds = [colour[0] > 2 * colour[1] and colour[0] > 2 * colour[2] for colour in marks]
         assert reds == [True, False], roll
+
+
+@pytest.mark.draws
+def test_every_picture_of_a_run_that_is_not_trusted_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A run to a tolerance has no note, even if its can leaves the incline, and a race names the can."""
+    said: list[tuple[str, ...]] = []
+    monkeypatch.setattr(Sheet, "plate", lambda _, place, lines, *others, **more: said.append(tuple(lines)))
+    rolls_off = simulate(frozen(), 0.9, math.pi, tolerance=1e-6)
+    assert rolls_off.rolling_warnings
+    wrong = simulate(frozen(), 0.9, math.pi, tolerance=1e-6)
+    vars(wrong)["solver_warnings"] = ("it is off by 3 rad",)
+    told = "Not to be relied on"
+
+    def notes(film: Film) -> list[tuple[str, ...]]:
+        del said[:]
+        assert len(list(film.plan().draw(np.array([0.1, 0.2]), *SIZE))) == 2
+        return [lines for lines in said if told in lines]
+
+    assert notes(MotionFilm(lambda: rolls_off, FIXED, speed=1.0)) == []
+    assert notes(MotionFilm(lambda: wrong, FIXED, speed=1.0)) == 2 * [(told, "it is off by 3 rad")]
+    cans = [Runner("one", rolls_off, (1.0, 0.0, 0.0)), Runner("other", wrong, (0.0, 0.0, 1.0))]
+    race = Race("a race", lambda: cans, 0.3, 0.5, speed=1.0)
+    assert notes(race) == 2 * [(told, "other: it is off by 3 rad")]
 
 
 @pytest.mark.draws

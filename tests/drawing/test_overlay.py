@@ -8,7 +8,7 @@ import pytest
 
 from mjbeer import Can, Trajectory, exact, frozen, hoop, pendulum, simulate, sliding
 from mjbeer.drawing.camera import View, follow, on_incline, scale
-from mjbeer.drawing.overlay import LONGEST, Board, Look, Mark, Marks, head, spans
+from mjbeer.drawing.overlay import LONGEST, Board, Look, Mark, Marks, head, spans, warn
 from mjbeer.drawing.scene import Display, coordinates
 from mjbeer.drawing.sheet import Box, Sheet, overlap
 from mjbeer.model.looks import WALL
@@ -46,6 +46,16 @@ def drawn(motion: Trajectory, time: float, *kinds: Mark) -> tuple[Recorder, View
     sheet = Recorder(*PIXELS)
     Marks(motion, Look("", marks=kinds), PLANE).draw(sheet, view, time, now)
     return sheet, view, now
+
+
+@pytest.mark.parametrize("width", [400, 1280])
+def test_the_note_on_a_run_that_is_not_trusted_fits_into_the_picture(width: int) -> None:
+    sheet = Recorder(width, 720)
+    warn(sheet, [], 100)
+    assert sheet.boxes == []
+    warn(sheet, ["phi and u/a are off by 0.499 rad (trusted up to 0.01), as a run at other timesteps shows"], 100)
+    assert " ".join(sheet.words).startswith("Not to be relied on phi and u/a are off by 0.499 rad")
+    assert all(left > 0 and right < width and top >= 100 for left, top, right, _ in sheet.boxes)
 
 
 def place(motion: Trajectory, view: View, along: float, height: float) -> np.ndarray:

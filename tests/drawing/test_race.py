@@ -43,6 +43,17 @@ def test_the_plates_have_all_times() -> None:
     assert early == [(pytest.approx(last - 0.41), f"needs {last:.2f} s"), (first, f"1st: {first:.2f} s")]
 
 
+def test_cans_with_the_same_time_share_their_place() -> None:
+    """Times are the same that a viewer sees to be; the places after them are counted on."""
+    last, first = run(frozen(INCLINE, fill=1.0)), run(sliding(INCLINE, fill=1.0))
+    almost = run(sliding(INCLINE * (1 - 1e-9), fill=1.0))
+    assert first.finish(1.0) < almost.finish(1.0)
+    race = Race("a race", list, 1.0, duration=3.0, speed=0.5)
+    told = [words for _, words in race.results([last, first, almost])]
+    quick, slow = (f"{can.finish(1.0):.2f} s" for can in (first, last))
+    assert told == [f"3rd: {slow}", f"shared 1st: {quick}", f"shared 1st: {quick}"]
+
+
 @pytest.mark.draws
 @pytest.mark.slow
 def test_centres_of_mass_stay_abreast_however_the_beer_swings(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from mjbeer import Can, exact, frozen, simulate, sliding
+from mjbeer import Can, exact, frozen, hoop, simulate, sliding
 from mjbeer.drawing import strip
 from mjbeer.drawing.sheet import Sheet
 from mjbeer.drawing.strip import QUANTITIES, Chart, Line, Strip, charts, unbroken
@@ -45,6 +45,13 @@ def test_theory_ends_where_the_incline_would_have_to_pull() -> None:
     assert simulated.time[-1] == 1.0
     assert theory.time[-1] == pytest.approx(0.834, abs=1e-3)
     assert theory.values.min() > 0
+
+
+def test_theory_is_not_named_where_a_can_does_not_roll_at_all() -> None:
+    """A hoop that is turned at 30 rad/s with its weight in front would leave the ground at once if it rolled."""
+    run = simulate(hoop(hoop_mass=0.06), 0.02, -math.pi / 2, 30.0, rolling="contact", friction=0.01, timestep=2e-4)
+    (chart,) = charts(run, ["normal"])
+    assert [line.name for line in chart.lines] == ["MuJoCo"]
 
 
 def test_an_angle_that_jumps_is_not_joined() -> None:

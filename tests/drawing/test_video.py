@@ -128,16 +128,18 @@ def test_an_interrupted_video_leaves_what_was_there(
 def test_films_are_made_in_other_processes_or_one_error_is_told(
     tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """A hidden file of somebody else's that has a like name stays. A process that is ended may leave one of its own."""
+    (tmp_path / ".a-mine").write_text("mine")
     orders = [FilmJob(FILM, tmp_path / f"{name}.mp4", 160, 90, 10) for name in "ab"]
     stills = produce(orders, Console(quiet=True))
-    assert sorted(os.listdir(tmp_path)) == ["a.mp4", "b.mp4"]
+    assert sorted(os.listdir(tmp_path)) == [".a-mine", "a.mp4", "b.mp4"]
     assert (tmp_path / "a.mp4").read_bytes() == (tmp_path / "b.mp4").read_bytes()
     assert stills[0] == stills[1]
     assert stills[0][8:12] == b"WEBP"
     monkeypatch.setenv("IMAGEIO_FFMPEG_EXE", str(tmp_path / "nowhere"))
     with pytest.raises(RenderingError, match="nowhere' is not found"):
         produce(orders, Console(quiet=True))
-    assert sorted(os.listdir(tmp_path)) == ["a.mp4", "b.mp4"]
+    assert {".a-mine", "a.mp4", "b.mp4"} <= {*os.listdir(tmp_path)}
 
 
 def test_opengl_that_does_not_start_says_what_installs_it(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -24,10 +24,10 @@ from mjbeer.integrators.gauss_jackson.weights import COUNT, LAG, POSITION, VELOC
 from mjbeer.model.build import build
 from mjbeer.model.joints import initial_state, to_coordinates
 from mjbeer.simulation import tolerance
+from mjbeer.simulation.methods import swing_law
 from mjbeer.simulation.smooth_recorder import SmoothRecorder
-from mjbeer.simulation.tolerance import swing_law
+from mjbeer.theory import trajectory
 from mjbeer.theory.scene import Scene
-from mjbeer.theory.trajectory import largest_error
 from tests.support.scenes import METAL
 
 
@@ -74,7 +74,7 @@ def largest_error(scene: Scene, phi0: float, timestep: float, times: np.ndarray,
     method = GaussJackson(Dynamics(model), timestep, time)
     states = method.run(initial_state(model, scene, phi0, 0.0), times)
     motion = to_coordinates(model, scene, states, times)
-    return distance(motion, exact(scene, times, phi0), scene.can.radius)
+    return trajectory.largest_error(motion, exact(scene, times, phi0), scene.can.radius)
 
 
 @pytest.mark.parametrize("scene", [sliding(), frozen(), pendulum()])

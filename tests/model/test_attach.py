@@ -279,6 +279,20 @@ def test_what_cannot_be_attached_is_refused(
         attach(world(), can, **arguments)
 
 
+@pytest.mark.parametrize("free", [True, False])
+def test_what_mujoco_cannot_move_is_refused_as_by_build(free: bool) -> None:
+    """A pendulum of a small can, whose inertia is below MuJoCo's least; the parent stays as it was."""
+    can, spec = standing(can=Can.sheet_metal(0.004, 0.01), modes=5), world()
+    with pytest.raises(UnsupportedError, match=r"^MuJoCo cannot represent this scene: .*than mjMINVAL") as built:
+        build(can, free=free)
+    before = spec.to_xml()
+    with pytest.raises(UnsupportedError) as attached:
+        attach(spec, can, free=free)
+    assert str(attached.value).partition("Element")[0] == str(built.value).partition("Element")[0]
+    assert spec.to_xml() == before
+    assert spec.compile().nbody == 1
+
+
 def test_a_massless_frozen_can_and_other_sizes_move_too() -> None:
     light = Scene(Can(), Load.segment(), 0.0, "frozen")
     spec = world()

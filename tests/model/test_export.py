@@ -1,7 +1,7 @@
 """Exported MJCF: MuJoCo 4 loads it without mjbeer, it is the model that mjbeer builds, and moves as the paper says.
 
 Portable exports are loaded by MuJoCo 3.3, MJX, mujoco_warp and dm_control too. The tests with these install them in
-build/others, and run only where MJBEER_OTHERS names the tools: `MJBEER_OTHERS="MuJoCo 3.3" .venv/bin/python -m pytest
+build/others, and run only where MJBEER_OTHERS names the tools: `MJBEER_OTHERS="MuJoCo 3.3.4" .venv/bin/python -m pytest
 tests/model/test_export.py` takes half a minute the first time; MJBEER_OTHERS=all downloads about 1.5 GB and takes half
 an hour. The names are those of `tools.portability.OTHERS`.
 """
@@ -210,6 +210,14 @@ def test_sensors_have_the_values_of_the_letters(name: str, rolling: Rolling) -> 
 
 
 # What others make of portable exports
+
+
+def test_the_oldest_mujoco_that_is_promised_is_the_one_that_is_tried() -> None:
+    """3.3.1 to 3.3.3 do not know "cameraid" of the element global."""
+    page = (others.CHECKOUT / "docs" / "portability.md").read_text()
+    promised = re.findall(r"MuJoCo (?:from )?(3\.\d\.\d)", f"{page} {export.__doc__}")
+    assert set(promised) == {others.OLDEST}
+    assert f"mujoco=={others.OLDEST}" in BY_NAME[f"MuJoCo {others.OLDEST}"].requirements
 
 
 @pytest.mark.costly

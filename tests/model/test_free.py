@@ -50,6 +50,40 @@ def test_the_sensors_tell_the_slosh() -> None:
     assert data.sensor("slosh1_rise").data[:2] == pytest.approx([can.elevations()[0] * math.sin(tilt), 0])
 
 
+@pytest.mark.filterwarnings("ignore::mjbeer.LiquidWarning")
+@pytest.mark.parametrize(
+    ("liquid", "fill", "modes", "ratio"),
+    [
+        ("honey", 0.02, 3, None),  # over-damped: it had 1.35 of its mass
+        ("honey", 0.05, 1, None),
+        ("glycerol", 0.016, 3, None),
+        ("water", 0.014, 1, 1.0),
+        ("water", 0.014, 1, 0.99),  # damped so much that its bob, to be stable, would outweigh the liquid
+        ("water", 0.1, 5, 0.99),
+        ("honey", 0.5, 5, None),
+    ],
+)
+def test_a_thick_liquid_has_its_mass(liquid: str, fill: float, modes: int, ratio: float | None) -> None:
+    """And its centre of mass, as theory has the model; and a fixed part, which is a body that MuJoCo can move."""
+    can = standing(liquid, fill, modes=modes, damping_ratio=ratio)
+    model = build(can)
+    masses, heights = liquid_parts(model)
+    mass, first, _ = can.fixed_moments()
+    assert masses.sum() == pytest.approx(can.mass, rel=1e-12)  # sums of a few numbers
+    assert mass == pytest.approx(can.mass, rel=1e-12)
+    assert masses @ (heights - can.height / 2) == pytest.approx(first, rel=1e-9, abs=1e-12 * can.mass * can.height)
+    assert model.body("liquid").mass[0] > 0.02 * can.mass
+    assert model.body_inertia[1:].min() > 0
+
+
+def liquid_parts(model: mujoco.MjModel) -> tuple[np.ndarray, np.ndarray]:
+    """Return mass [kg] and height above the can's bottom [m] of all bodies of the liquid, at rest."""
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    bodies = [body for body in range(model.nbody) if model.body(body).name.startswith(("liquid", "slosh"))]
+    return model.body_mass[bodies], data.xipos[bodies, 2]
+
+
 @pytest.mark.parametrize(("name", "value"), [("rolling", "contact"), ("friction", 0.5), ("phi0", 1.0)])
 def test_a_standing_can_does_not_roll(name: str, value: object) -> None:
     with pytest.raises(ParameterError, match=f"does not roll: it has none of .*, got .*{name!r}: {value!r}"):

@@ -19,6 +19,20 @@ def test_a_file_is_written_with_any_user_s_permissions(tmp_path: pathlib.Path) -
     assert target.stat().st_mode == usual.stat().st_mode
 
 
+@pytest.mark.parametrize("mode", [0o600, 0o664])
+def test_a_file_keeps_its_permissions_and_nobody_else_reads_the_new_one_before(
+    mode: int, tmp_path: pathlib.Path
+) -> None:
+    target = tmp_path / "motion.csv"
+    target.write_text("old")
+    target.chmod(mode)
+    with files.atomic_write(target) as temporary:
+        assert temporary.stat().st_mode & 0o777 == mode
+        temporary.write_text("new")
+    assert target.stat().st_mode & 0o777 == mode
+    assert target.read_text() == "new"
+
+
 def test_a_folder_that_may_be_misspelt_is_not_made(tmp_path: pathlib.Path) -> None:
     """Where a folder is to be written to, its last name may be new, and its others may not."""
     for write in (lambda path: files.write(path, ""), files.make_folder):

@@ -47,7 +47,8 @@ def test_the_command(
     monkeypatch.setattr(opengl, "problem", lambda: problem)
     assert main(["paper", *words, "--output", str(tmp_path)]) == 0
     text, err, filmed = (tmp_path / "stories.md").read_text(), capsys.readouterr().err, bool(words) and not problem
-    assert set(os.listdir(tmp_path)) == {"letters.svg", "told.svg", "stories.md"} | ({"told.mp4"} if filmed else set())
+    shown = {name for name in os.listdir(tmp_path) if not name.startswith(".")}
+    assert shown == {"letters.svg", "told.svg", "stories.md"} | ({"told.mp4"} if filmed else set())
     assert all(each in text for each in ("## told", "![told](told.svg)", "A stub's story."))
     assert ("[Film](told.mp4)" in text) == filmed
     missing = opengl.missing(["told.mp4"])

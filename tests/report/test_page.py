@@ -15,6 +15,7 @@ from mjbeer import paper
 from mjbeer.cli.app import main, parse
 from mjbeer.drawing import opengl
 from mjbeer.drawing.film import MotionFilm
+from mjbeer.output import folders
 from mjbeer.paper.checks import Result
 from mjbeer.paper.claim import CORRECTED, Bound, Claim, Witness
 from mjbeer.report import films, page
@@ -84,7 +85,8 @@ def test_a_report_is_one_page_with_all_films(
     calls = stubs.draw(monkeypatch)
     folder = tmp_path / "report"
     assert main(["report", "--output", str(folder), *(["--quick"] if quick else [])]) == 0
-    assert set(os.listdir(folder)) == {"index.html", "live.html", "stability-more.svg"}
+    shown = {name for name in os.listdir(folder) if not name.startswith(".")}
+    assert shown == {"index.html", "live.html", "stability-more.svg"}
     text = (folder / "index.html").read_text()
     found = [base64.b64decode(each.partition(",")[2]).decode() for each in Page(text).values("src", "source")]
     assert found == [f"film {name}" for name in (*FILMS, *([] if quick else ["told"]))]
@@ -111,15 +113,17 @@ def test_without_opengl_a_report_has_all_but_films_and_says_so(
     assert "<video" not in text
 
 
-def test_a_film_that_fails_leaves_no_page(
+def test_a_film_that_fails_leaves_the_old_page(
     tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     stubs.validate(monkeypatch, first=1e-5)
     stubs.draw(monkeypatch, fail_at="pendulum.mp4")
-    (tmp_path / "index.html").write_text("of an earlier report")
+    with folders.owned(tmp_path, "mjbeer report"):
+        (tmp_path / "index.html").write_text("of an earlier report")
     assert main(["report", "--output", str(tmp_path)]) == 2
     assert capsys.readouterr().err.endswith("mjbeer: cannot draw pendulum.mp4\n")
-    assert os.listdir(tmp_path) == []
+    assert [path.name for path in tmp_path.iterdir() if not path.name.startswith(".")] == ["index.html"]
+    assert (tmp_path / "index.html").read_text() == "of an earlier report"
 
 
 @pytest.fixture(scope="module")

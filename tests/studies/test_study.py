@@ -13,6 +13,7 @@ import pytest
 
 from mjbeer.cli.app import main
 from mjbeer.exceptions import OutputError, ParameterError
+from mjbeer.output import folders
 from mjbeer.paper.checks import Check, Result
 from mjbeer.studies import study as studies
 from mjbeer.studies.study import Study
@@ -30,8 +31,8 @@ run(checks, None, pathlib.Path(sys.argv[1]), "mjbeer test", {})
 
 HOLD = """
 import pathlib, sys, time
-from mjbeer.studies.study import locked
-with locked(pathlib.Path(sys.argv[1])):
+from mjbeer.output.folders import owned
+with owned(pathlib.Path(sys.argv[1]), sys.argv[2]):
     print("locked", flush=True)
     time.sleep(3600)
 """
@@ -77,8 +78,27 @@ def test_an_interrupted_study_goes_on(tmp_path: pathlib.Path, monkeypatch: pytes
     assert done == ["a", "b", "b", "c"]
     assert Study.load(path, "mjbeer test") == found
     assert [(result.name, result.values["of"]) for result in found.results] == [(name, name) for name in "abc"]
-    studies.run(study, None, path, "mjbeer test", {"quick": False})
-    assert done == ["a", "b", "b", "c", "a", "b", "c"]
+    with pytest.raises(
+        ParameterError, match=r"study\.jsonl has a study of other settings, or of another machine: remove"
+    ):
+        studies.run(study, None, path, "mjbeer test", {"quick": False})
+    assert Study.load(path, "mjbeer test") == found
+
+
+def test_a_finished_study_stays_until_another_is_whole_and_is_not_made_again(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(os, "cpu_count", lambda: 1)
+    done: list[str] = ["before"]
+    study, path, kept = counting(done), tmp_path / "unfinished.jsonl", tmp_path / "study.jsonl"
+    first = studies.run(study, None, path, "mjbeer test", {"quick": False}, kept)
+    path.rename(kept)
+    assert studies.run(study, None, path, "mjbeer test", {"quick": False}, kept) == first
+    assert done == ["before", "a", "b", "c"]
+    path.unlink()
+    studies.run(study, None, path, "mjbeer test", {"quick": True}, kept)
+    assert done == ["before", "a", "b", "c", "a", "b", "c"]
+    assert Study.load(kept, "mjbeer test") == first
 
 
 @pytest.mark.parametrize("text", ["", "{}\n", "[]\n", '{"command": "mjbeer else", "settings": {}, "machine": {}}\n'])
@@ -134,20 +154,21 @@ def test_no_process_outlives_the_one_that_started_it(number: signal.Signals, tmp
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("command", ["benchmark", "stability"])
-def test_a_second_study_in_a_folder_is_refused_until_the_first_is_gone(
+@pytest.mark.parametrize("command", ["benchmark", "stability", "paper", "report"])
+def test_a_second_command_in_a_folder_is_refused_until_the_first_is_gone(
     command: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Killed, the first cannot tidy up; what it leaves keeps nobody out."""
-    for study in ("benchmark.timing", "stability.stability_study"):
-        monkeypatch.setattr(f"mjbeer.studies.{study}.conduct", lambda *_: pytest.fail("it was begun"))
+    for work in ("studies.benchmark.timing.conduct", "studies.stability.stability_study.conduct", "report.page.write"):
+        monkeypatch.setattr(f"mjbeer.{work}", lambda *_: pytest.fail("it was begun"))
+    monkeypatch.setattr("mjbeer.paper.stories.write", lambda *_: pytest.fail("it was begun"))
     folder = tmp_path / "new"
-    with start([str(folder)], HOLD) as holder:
+    with start([str(folder), f"mjbeer {command}"], HOLD) as holder:
         hear(holder, "locked")
         assert main([command, "--output", str(folder)]) == 2
         assert capsys.readouterr().err == f"mjbeer: cannot write to {folder}: another command is at work there\n"
-        assert os.listdir(folder) == [".lock"]
+        assert sorted(os.listdir(folder)) == [".lock", ".mjbeer"]
         interrupt(holder, signal.SIGKILL)
     for _ in range(2):
-        with studies.locked(folder):
+        with folders.owned(folder, f"mjbeer {command}"):
             pass

@@ -33,6 +33,14 @@ def highest(trajectory: Trajectory) -> float:
     return float(trajectory.phi.max())
 
 
+def missing(trajectory: Trajectory) -> float:
+    return math.nan
+
+
+def endless(trajectory: Trajectory) -> float:
+    return math.inf
+
+
 def broken(trajectory: Trajectory) -> float:
     raise ZeroDivisionError(f"no {trajectory.scene.attachment} can do that")
 
@@ -107,7 +115,7 @@ def test_a_period_is_that_of_exact_theory() -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"fill": [0.5, 1.5]}, r"fill\[1\]: fill must be between 1e-12 and 1, got 1.5"),
+        ({"fill": [0.5, 1.5]}, r"fill\[1\]: fill must be a fraction between 1e-12 and 1 .*, got 1.5"),
         ({"fil": [0.5]}, r"fil\[0\]: sliding\(\) got an unexpected keyword argument 'fil'"),
         ({"phi0": [0.1, 1e11]}, r"phi0\[1\]: phi0 must be between"),
         ({"quantity": "perod"}, "quantity must be one of 'phi', .*'period', .*; got 'perod'"),
@@ -162,6 +170,15 @@ def test_a_quantity_without_a_value_leaves_the_others() -> None:
     assert np.isfinite(swept["phi"]).all()
     assert swept["highest"][0] == simulate(frozen(math.radians(5)), 1.5, 1.0, tolerance=1e-6).phi.max()
     assert "broken: ZeroDivisionError: no frozen can do that" in swept.failed
+
+
+def test_a_quantity_that_is_not_a_number_is_told() -> None:
+    """Infinity is a value: the time of what never happens has it."""
+    swept = mjbeer.sweep(frozen, 0.1, 1.0, fill=[0.4, 0.5], quantity=[missing, endless])
+    assert swept["status"].values.tolist() == [NO_VALUE, NO_VALUE]
+    assert swept.failed == "scene 0 (fill[0] = 0.4): missing: it is not a number (NaN)"
+    assert np.isinf(swept["endless"]).all()
+    assert mjbeer.sweep(frozen, 0.1, 1.0, fill=[0.4], quantity=endless)["status"].values.tolist() == [WELL]
 
 
 def test_what_liquids_warn_of_is_said_once() -> None:

@@ -5,7 +5,7 @@ import math
 from hypothesis import strategies as st
 
 from mjbeer import Can, Load, Scene, exact, frozen, hoop, pendulum, sliding
-from mjbeer.simulation.simulate import Run
+from mjbeer.simulation.run import Run
 from mjbeer.theory.trajectory import largest_error
 
 METAL = Can.sheet_metal()

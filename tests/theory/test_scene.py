@@ -69,14 +69,18 @@ def test_damping_and_drag_have_rates() -> None:
 
 
 NOTHING = "next to nothing resists rotation at phi = 0"
+FRACTION = "fill must be a fraction between 1e-12 and 1 (50 % is 0.5), got "
 REFUSED = [
     ("sheet thickness must be greater than 0", lambda: Can.sheet_metal(thickness=0.0)),
     ("load density must be greater than 0", lambda: sliding(density=0.0)),
-    ("fill must be between 1e-12 and 1, got 1.0000000000000002", lambda: sliding(fill=math.nextafter(1, 2))),
+    (FRACTION + "1.0000000000000002", lambda: sliding(fill=math.nextafter(1, 2))),
+    (FRACTION + "50", lambda: sliding(fill=50)),
+    (FRACTION + "50", lambda: Load(0.2, 0.01, 1e-5, fill=50)),
     ("incline must be between -1.5708 and 1.5708 [rad], got 1.57", lambda: sliding(math.pi / 2)),
     ("attachment must be one of 'sliding', 'frozen'; got 'glued'", lambda: Scene(Can(), BEER, attachment="glued")),
-    ("can inertia with a mass of 0 kg must be between 0 and 0 [kg m^2], got 1e-05", lambda: Can(inertia=1e-5)),
-    ("fill must be between 1e-12 and 1, got 0.0", lambda: sliding(fill=0.0)),
+    ("can inertia must be 0 for a can without mass [kg m^2], got 1e-05", lambda: Can(inertia=1e-5)),
+    ("can inertia with a mass of 2 kg must be between 0 and 21.78 [kg m^2], got 22", lambda: Can(mass=2, inertia=22)),
+    (FRACTION + "0.0", lambda: sliding(fill=0.0)),
     ("can must be a Can, got 'metal'", lambda: sliding(can="metal")),
     ("load must be a Load, got", lambda: Scene(Can(), Can)),
     # At phi = 0 the load neither turns nor moves, and the can weighs nothing.

@@ -92,10 +92,24 @@ def test_a_thick_liquid_warns() -> None:
         standing("honey")
 
 
+def test_a_liquid_that_is_over_damped_does_not_slosh() -> None:
+    """It is a solid as with modes=0, though a `count` still asks for what theory has of each mode."""
+    with pytest.warns(LiquidWarning, match=r"does not slosh: .* 2\.72 times the critical one; give a damping_ratio"):
+        honey = standing("honey", fill=0.03, modes=3)
+    assert honey.moving_modes == 0
+    for method in ("frequencies", "slosh_masses", "pivots", "damping_ratios", "elevations"):
+        assert len(getattr(honey, method)()) == 0
+        assert len(getattr(honey, method)(3)) == 3
+    assert honey.damping_ratios(1)[0] > 1
+    assert np.array_equal(honey.fixed_moments(), standing("honey", fill=0.03, modes=0).fixed_moments())
+    assert standing("water", modes=3, damping_ratio=1.0).moving_modes == 0
+    assert standing("water", modes=3, damping_ratio=0.999).moving_modes == 3
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"fill": 1.0}, r"fill must be between 0 and 1: a full can has no free surface, got 1\.0"),
+        ({"fill": 1.0}, r"fill must be a fraction between 0 and 1 .*: a full can has no free surface, got 1\.0"),
         ({"fill": 0.001}, r"height of the liquid over the radius must be between 0\.05 and 50"),
         ({"can": Can()}, r"a standing can must have mass and inertia, as Can\.sheet_metal\(\)"),
         ({"modes": 6}, r"modes must be one of 0, 1, \.\.\. 5, got 6"),

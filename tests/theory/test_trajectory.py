@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 from mjbeer import MjbeerError, Scene, Trajectory, exact, frozen, hoop, pendulum, simulate, sliding
 from mjbeer.exceptions import OutputError
 from mjbeer.theory.equations import Coordinates, select_samples
-from mjbeer.theory.record import ERROR, LIFT, SLIP, Record, failed_checks, rolling_failures
+from mjbeer.theory.record import ERROR, LIFT, SLIP, Record, RecordMaker, failed_checks, rolling_failures
 from mjbeer.theory.trajectory import csv
 from tests.support.scenes import METAL, SCENES
 
@@ -119,10 +119,12 @@ def test_a_lost_momentum_is_noticed(scene: Scene) -> None:
 def test_a_record_does_not_depend_on_how_a_motion_is_cut() -> None:
     """Not even where rolling stops being possible between two pieces."""
     motion = exact(frozen(), TIME, math.pi)
-    whole, pieces = Record.of(motion, motion.scene), Record(motion.scene)
+    whole = Record.of(motion, motion.scene)
+    maker = RecordMaker(motion.scene)
     fails = int(np.searchsorted(TIME, whole.rolling_ends_at))
     for samples in np.split(np.arange(len(TIME)), [1, 7, fails, 300]):
-        pieces.add(select_samples(motion, samples))
+        maker.add(select_samples(motion, samples))
+    pieces = maker.record
     for name in (
         *("slip", "lift", "largest_turn", "largest_distance", "largest_rate", "needed_friction", "rolling_ends_at"),
         *("energy_drift", "axis_drift"),

@@ -23,11 +23,13 @@ ICE = frozen(math.radians(5), can=METAL)
 KNOWN = {"fill": (0.5, 0.005)}
 
 
-def filmed(scene: Scene, phi0: float | None = None, noise: float = 1e-3, seed: int = 0) -> Track:
-    """The track of a can that is let go at 17.4 s, by exact theory, with a gap; the camera runs from 17 s to 20 s."""
+def filmed(scene: Scene, phi0: float | None = None, noise: float = 1e-3, seed: int = 0, seconds: float = 3.0) -> Track:
+    """The track of a can that is let go at 17.4 s, by exact theory, with a gap; the camera runs from 17 s on."""
     rng = np.random.default_rng(seed)
-    time = np.arange(180) / 60
-    way = exact(scene, np.maximum(time - 0.4, 0.0), -scene.incline if phi0 is None else phi0).distance
+    time = np.arange(round(60 * seconds)) / 60
+    rolls = time > 0.4
+    way = np.zeros(len(time))
+    way[rolls] = exact(scene, time[rolls] - 0.4, -scene.incline if phi0 is None else phi0).distance
     kept = (time < 1.5) | (time > 1.7)
     return Track(17 + time[kept], 0.1 + way[kept] + noise * rng.standard_normal(kept.sum()))
 
@@ -48,6 +50,33 @@ def test_the_truth_is_within_the_errors(scene: Scene) -> None:
     assert result.noise["along"] == pytest.approx(1e-3, rel=0.25)
     assert result.scene.incline == result.values["incline"]
     assert not [each for each in result.warnings if "model is wrong" in each or "does not tell" in each]
+
+
+def test_the_start_of_a_search_is_not_its_answer() -> None:
+    """A fill of 0.30 is nearly in step with these many swings of ice; the truth is between the fills 0.10 and 0.15."""
+    scene, guess = frozen(math.radians(3.084), 0.1271, METAL), frozen(math.radians(3.4), 0.1598, METAL)
+    result = found(filmed(scene, seconds=5.0), guess, "incline", "fill")
+    for name, truth in {"incline": scene.incline, "fill": 0.1271, "released": 17.4}.items():
+        assert abs(result.values[name] - truth) < 4 * result.errors[name], name
+
+
+@pytest.mark.parametrize(
+    ("degrees", "fill", "phi0", "noise"),
+    [
+        (2.557, 0.5033, None, 1e-3),  # it rocks 30 times: let go a swing too late it would be nearly the same
+        (2.955, 0.5734, None, 1e-3),
+        (6.603, 0.4142, -2.2, 3e-4),  # 24 m and 115 turns
+    ],
+)
+def test_white_noise_of_a_long_track_is_no_wrong_model(
+    degrees: float, fill: float, phi0: float | None, noise: float
+) -> None:
+    scene = frozen(math.radians(degrees), fill, METAL)
+    guess = remade(scene, {"incline": scene.incline + 0.01})
+    result = found(filmed(scene, phi0, noise, seconds=8.0), guess, phi0="level" if phi0 is None else phi0)
+    assert not [each for each in result.warnings if "N < 0" not in each]
+    assert abs(result.values["incline"] - scene.incline) < 4 * result.errors["incline"]
+    assert abs(result.values["released"] - 17.4) < 4 * result.errors["released"]
 
 
 SMOOTH, FULL, MISTAKEN = sliding(WATER.incline, can=METAL), frozen(math.radians(3), 0.6, METAL), filmed(OIL)
@@ -81,7 +110,10 @@ def test_tracked_angles_give_the_scale_and_the_start() -> None:
     """The mark turns by the way over the radius; the load is let go 0.3 rad beyond the level."""
     start, true = 0.3 - OIL.incline, filmed(OIL, 0.3 - OIL.incline, noise=0.0)
     noise = 1e-3 * np.random.default_rng(1).standard_normal((3, len(true.time)))
-    phi = exact(OIL, np.maximum(true.time - 17.4, 0.0), start).phi + 10 * noise[2]
+    rolls = true.time > 17.4
+    phi = np.full(len(true.time), start)
+    phi[rolls] = exact(OIL, true.time[rolls] - 17.4, start).phi
+    phi += 10 * noise[2]
     roll = 0.7 + (true.along - 0.1) / 0.033 + noise[1] / 0.033
     result = found(Track(true.time, 1.02 * true.along + noise[0], roll, phi), OIL, "incline", "damping", phi0="free")
     for name, truth in {"scale": 1.02, "turned": 0.7, "incline": OIL.incline, "phi0": start}.items():
@@ -114,6 +146,18 @@ def test_the_plot_and_the_command_show_the_fit(tmp_path: pathlib.Path, capsys: p
     assert capsys.readouterr().out == "\n".join([result.title, *result.lines()]) + "\n"
     assert f"incline, less rolling resistance: {math.degrees(result.values['incline']):.3f}°" in plot.read_text()
     assert np.std(result.plot()[1].get_lines()[0].get_ydata()) == pytest.approx(1e3 * result.noise["along"], rel=0.05)
+
+
+@pytest.mark.parametrize("suffix", ["svg", "mp4"])
+def test_a_file_that_cannot_be_written_is_refused_before_the_fit(
+    suffix: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    fitted = mock.Mock(side_effect=AssertionError("the fit began"))
+    monkeypatch.setattr("mjbeer.tracks.fit.fit", fitted)
+    track, table = filmed(ICE), tmp_path / "can.csv"
+    np.savetxt(table, np.stack([track.time, track.along], axis=1), header="t,x", comments="", delimiter=",")
+    assert main(["fit", str(table), "frozen", "--output", str(tmp_path / "nowhere" / f"x.{suffix}")]) == 2
+    assert f"there is no folder {tmp_path / 'nowhere'}" in capsys.readouterr().err.replace("\n", " ")
 
 
 def test_the_film_has_the_tracked_places_as_marks(monkeypatch: pytest.MonkeyPatch) -> None:

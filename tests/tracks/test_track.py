@@ -8,8 +8,7 @@ import pytest
 
 from mjbeer import read_track
 from mjbeer.exceptions import ParameterError
-
-TIME, PLACE = 17 + np.arange(20) / 60, 0.1 + 0.5 * (np.arange(20) / 60) ** 2
+from tests.support.tables import PLACE, TABLES, THOUSANDS, TIME, UNCLEAR, table
 
 
 def written(folder: pathlib.Path, text: str, encoding: str = "utf-8") -> pathlib.Path:
@@ -18,32 +17,17 @@ def written(folder: pathlib.Path, text: str, encoding: str = "utf-8") -> pathlib
     return path
 
 
-def table(heading: str, mark: str, *columns: np.ndarray, comma: bool = False) -> str:
-    lines = [mark.join(f"{value:.9f}" for value in row) for row in np.column_stack(columns)]
-    return "\n".join([heading, *(line.replace(".", ",") if comma else line for line in lines)]) + "\n"
-
-
-TABLES = {
-    "Tracker 5": table("multi:\t\t\nmass A\t\t\nt\tx\ty", "\t", TIME, PLACE, 0 * PLACE),
-    "Tracker 6, commas": table('"multi:",,\nt,x', ",", TIME, PLACE),
-    "decimal commas": table("t (s);x (cm)", ";", TIME, 100 * PLACE, comma=True),
-    "Logger Pro": table("Latest: Time (s)\tLatest: X (mm)", "\t", TIME, 1000 * PLACE),
-    "Capstone": table('"Time (s) Run #1","Position (m) Run #1"', ",", TIME, PLACE),
-    "phyphox": table('"Time (ms)","Distance (m)"', ",", 1000 * TIME, PLACE),
-    "spaces": table("t x", " ", TIME, PLACE),
-    "points that were lost": table("t;x", ";", TIME, PLACE).replace("\n17.2", "\n17.199;\n\n17.2", 1),
-    # To the left and down, as the picture has it; the way counts as the can went.
-    "a tilted board": table("t x y", " ", TIME, -PLACE * np.cos(0.1), 0.3 - PLACE * np.sin(0.1)),
-    "notes": table("t;x;note", ";", TIME, PLACE, 0 * TIME).replace("0.000000000\n", "\n"),
-}
-
-
 @pytest.mark.parametrize("text", TABLES.values(), ids=TABLES)
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])  # the latter two are Excel's
 def test_tables_as_people_have_them(text: str, encoding: str, tmp_path: pathlib.Path) -> None:
     track = read_track(written(tmp_path, text, encoding))
     assert track.time == pytest.approx(TIME)
     assert track.along - track.along[0] == pytest.approx(PLACE - PLACE[0], abs=1e-8)
+
+
+@pytest.mark.parametrize(("text", "places"), THOUSANDS.values(), ids=THOUSANDS)
+def test_a_comma_is_what_the_other_numbers_say(text: str, places: list[float], tmp_path: pathlib.Path) -> None:
+    assert read_track(written(tmp_path, text)).along[: len(places)] == pytest.approx(places, rel=1e-12)
 
 
 @pytest.mark.parametrize("column", ["A (cm) raw", 2, "2"])
@@ -57,6 +41,7 @@ def test_frames_with_a_rate_and_columns_by_name(column: str | int, tmp_path: pat
 
 GOOD = TABLES["spaces"].replace(" ", ",")
 WRONG = {
+    **UNCLEAR,
     "line 1: 2 columns may be x; say which": table("t,x,X", ",", TIME, PLACE, PLACE),
     "line 1: time and x are needed": table("t,z", ",", TIME, PLACE),
     "line 1, column 2: the unit of x is one of m, cm, mm, got 'x (px)'": GOOD.replace("t,x", "t,x (px)"),

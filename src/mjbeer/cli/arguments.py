@@ -107,7 +107,7 @@ _RUN = (
     *_MODEL,
 )
 _JSON = Option("--json", "print the results as JSON", False)
-_FOLDER = "folder to write to"
+_FOLDER = "folder to write to, which is new, empty, or this command's own"
 OPTIONS = {  # of each command; if a scene comes first, these come after that of the scene
     "simulate": (*_RUN, Option("--output", 'CSV file to write; "-" is standard output', None, Path), _JSON),
     "render": (

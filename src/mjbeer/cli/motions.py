@@ -22,7 +22,7 @@ from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import csv
 
 if TYPE_CHECKING:
-    from mjbeer.simulation.simulate import Run
+    from mjbeer.simulation.run import Run
 
 KeyFigure = tuple[str, Any, str, str]  # a name, a value, its unit, and how text shows it: as a format, or in words
 
@@ -46,6 +46,7 @@ class Summary:
         slip, lift, normal = run.slip / radius, run.lift / radius, run.forces.normal
         solved = not run.solver_warnings
         holds = not (run.rolling_warnings or run.liquid_warnings or self.notes)
+        drift = None if run.scene.dissipates else run.energy_drift  # what damping and drag take is no error
         scale = "the swing's largest kinetic energy" if run.scene.load.offset else "the largest kinetic energy"
         end = "the end" if math.isinf(until) else f"t = {until:.6g} s"
         return (
@@ -56,7 +57,7 @@ class Summary:
             ("end", run.time[-1], "s", "{:.6g}"),
             ("phi at the end", math.degrees(run.phi[-1]), "degrees", "{:.9g}"),
             ("u at the end", run.u[-1], "m", "{:.9g}"),
-            ("energy drift", run.energy_drift, "", f"{{:.2e}} of {scale}"),
+            ("energy drift", drift, "", f"{{:.2e}} of {scale}"),
             ("largest slip", np.abs(slip).max(), "radii", "{:.2e}"),
             ("final slip", slip[-1], "radii", "{:.2e}"),
             ("lowest lift", lift.min(), "radii", "{:.2e}"),
@@ -217,18 +218,18 @@ def fit(given: Namespace) -> None:
     track = read_track(given.file, dict(each.partition("=")[::2] for each in given.columns), given.rate)
     with warnings.catch_warnings(action="ignore", category=LiquidWarning):  # of a guess
         guess = scene(given)
-    found = fit(track, guess, given.free or ["incline"], dict(given.known), phi0, given.bend)
-    if given.json:
-        told = {"values": found.values, "errors": found.errors, "noise": found.noise, "warnings": found.warnings}
-        terminal.write(to_json(told, indent=2))
-    else:
-        terminal.write("\n".join([found.title, *found.lines()]) + "\n")
-        for each in found.warnings:
-            say(f"note: {each}", "yellow")
-    if output and output.suffix == ".mp4":
-        found.video(output)
-    elif output:
-        with files.atomic_write(output) as temporary:
+    with files.atomic_write(output) if output else nullcontext() as temporary:
+        found = fit(track, guess, given.free or ["incline"], dict(given.known), phi0, given.bend)
+        if given.json:
+            told = {"values": found.values, "errors": found.errors, "noise": found.noise, "warnings": found.warnings}
+            terminal.write(to_json(told, indent=2))
+        else:
+            terminal.write("\n".join([found.title, *found.lines()]) + "\n")
+            for each in found.warnings:
+                say(f"note: {each}", "yellow")
+        if temporary and temporary.suffix == ".mp4":
+            found.video(temporary)
+        elif temporary:
             figure: Any = found.plot()[0].figure
             figure.savefig(temporary, facecolor="white", dpi=150)
     if output:

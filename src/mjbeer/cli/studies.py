@@ -13,9 +13,9 @@ from mjbeer import require
 from mjbeer.cli.arguments import SCENES, make, scene_arguments, start, steps
 from mjbeer.exceptions import ParameterError
 from mjbeer.output import files, terminal
+from mjbeer.output.folders import owned, replaced
 from mjbeer.output.terminal import STDERR, say, show
 from mjbeer.studies.benchmark.points import CASES
-from mjbeer.studies.study import locked
 
 _PLOTS = (".png", ".svg")
 _ENDINGS = (*_PLOTS, ".csv", ".nc")
@@ -71,7 +71,8 @@ def report(given: Namespace) -> int:
     """Validate, draw films and plots, and write a page that shows it all; exit status 1 if a check fails."""
     from mjbeer.report.page import write
 
-    validation, not_drawn = write(given.output, given.quick, STDERR)
+    with owned(given.output, "mjbeer report"), replaced(given.output) as folder:
+        validation, not_drawn = write(folder, given.quick, STDERR)
     if not_drawn:
         say(not_drawn, "yellow")
     say(f"the report is in {given.output / 'index.html'}")
@@ -83,9 +84,9 @@ def benchmark(given: Namespace) -> None:
     from mjbeer.studies.benchmark import benchmark_tables, timing
 
     names = [require.choice("scene", name, CASES) for name in given.scenes or CASES]
-    with locked(given.output):
+    with owned(given.output, "mjbeer benchmark"), replaced(given.output) as folder:
         study = timing.conduct(names, given.quick, STDERR)
-        benchmark_tables.write(study, given.output)
+        benchmark_tables.write(study, folder)
     show(*benchmark_tables.tables(study))
     say(f"the study is in {given.output / 'summary.md'}")
 
@@ -94,9 +95,11 @@ def stability(given: Namespace) -> int:
     """Test stiff and extreme cases and the limits of stability, in eight minutes; exit status 1 if theory disagrees."""
     from mjbeer.studies.stability import stability_study as stability
 
-    with locked(given.output):
+    with owned(given.output, stability.COMMAND):
         study = stability.conduct(given.output, given.quick, STDERR)
-        stability.write(study, given.output)
+        with replaced(given.output) as folder:
+            stability.write(study, folder)
+        (given.output / stability.UNFINISHED).unlink(missing_ok=True)
     if given.json:
         terminal.write(stability.to_json(study))
     else:
@@ -111,7 +114,8 @@ def paper(given: Namespace) -> None:
     """Plot each of the paper's scenarios, and write a folder with a summary."""
     from mjbeer.paper import stories
 
-    not_drawn = stories.write(given.output, given.films, STDERR)
+    with owned(given.output, "mjbeer paper"), replaced(given.output) as folder:
+        not_drawn = stories.write(folder, given.films, STDERR)
     say(f"the stories are in {given.output / 'stories.md'}")
     if not_drawn:
         say(not_drawn, "yellow")

@@ -11,7 +11,7 @@ from scipy.interpolate import CubicHermiteSpline
 
 from mjbeer import require
 from mjbeer.drawing.camera import AROUND, View, follow, in_space, scale
-from mjbeer.drawing.overlay import HEADER, HEIGHT, NOTE, STRIP, Board, Look, Marks, head, header, note, spans
+from mjbeer.drawing.overlay import HEADER, HEIGHT, NOTE, STRIP, Board, Look, Marks, head, header, note, spans, warn
 from mjbeer.drawing.scene import Display, Painter, coordinates
 from mjbeer.drawing.sheet import INK, Sheet
 from mjbeer.drawing.strip import Strip, charts
@@ -23,6 +23,7 @@ from mjbeer.theory.trajectory import Trajectory
 _APART = 0.225  # distance from lane to lane as drawn [m]; a can is 0.12 m long
 _EYE = np.array([0.0, -math.cos(0.6), math.sin(0.6)])
 """Direction of the eye in a race: in front of the board, and so high above it that no can hides another."""
+_ORDINALS = "1st", "2nd", "3rd", "4th"
 _MOST_FRAMES = 1e6  # largest number of frames of a video: nine hours at 30 frames per second
 
 
@@ -92,6 +93,7 @@ def _pictures(
     marks, board = Marks(trajectory, look, plane), Board(display, float(trajectory.u[0]))
     notes = spans(trajectory, look.notes)
     marked = next(iter(notes.values()), ())
+    doubts = trajectory.solver_warnings
     strip = Strip(charts(trajectory, look.strips), width, below, marked) if below else None
     with closing(Painter(display, (width, seen), still)) as painter:
         for time, now in zip(times, coordinates(trajectory, times), strict=True):
@@ -101,6 +103,7 @@ def _pictures(
             board.draw(sheet, view)
             header(sheet, look, trajectory, time, speed)
             note(sheet, notes, time, top)
+            warn(sheet, doubts, top + spare)
             if strip is not None:
                 strip.draw(sheet, time, height - below)
             yield sheet.picture()
@@ -146,11 +149,21 @@ class Race(Film):
         return RenderPlan(0.0, self.duration, self.speed, partial(self._pictures, self.runners()))
 
     def results(self, runners: Sequence[Runner]) -> list[tuple[float, str]]:
-        """Return from when on a can's plate has its time [s], 0.4 s before the end at the latest, and what it says."""
-        finishes, end = [runner.finish(self.length) for runner in runners], self.duration
-        ordinals = dict(zip(sorted(finishes), ("1st", "2nd", "3rd", "4th"), strict=False))
-        results = [(finish, f"{ordinals[finish]}: {finish:.2f} s") for finish in finishes]
-        return [of if of[0] < end else (end - 0.4, f"needs {of[0]:.2f} s") for of in results]
+        """Return from when on a can's plate has its time [s], 0.4 s before the end at the latest, and what it says.
+
+        Cans whose times are the same as shown share a place.
+        """
+        finishes = [runner.finish(self.length) for runner in runners]
+        shown = [round(finish, 2) for finish in finishes]
+        results = []
+        for finish, time in zip(finishes, shown, strict=True):
+            if finish < self.duration:
+                place = _ORDINALS[sum(other < time for other in shown)]
+                shared = "shared " if shown.count(time) > 1 else ""
+                results.append((finish, f"{shared}{place}: {time:.2f} s"))
+            else:
+                results.append((self.duration - 0.4, f"needs {time:.2f} s"))
+        return results
 
     def _pictures(self, runners: Sequence[Runner], times: np.ndarray, width: int, height: int) -> Generator[np.ndarray]:
         sheet, scenes = Sheet(width, height), [runner.trajectory.scene for runner in runners]
@@ -167,6 +180,7 @@ class Race(Film):
             results = [(math.inf, "")] * len(runners)
         else:
             results, facts = self.results(runners), [f"{self.length:g} m", *facts]
+        doubts = [f"{runner.name}: {found}" for runner in runners for found in runner.trajectory.solver_warnings]
         words = ", ".join([*facts, self.facts]).removesuffix(", ")
         with closing(Painter(display, view.pixels)) as painter:
             for time, now in zip(times, positions, strict=True):
@@ -179,6 +193,7 @@ class Race(Film):
                     sheet.plate(place, [runner.name, *[said] * bool(said)], runner.colour, (1, 0.5))
                 if self.centres:
                     _join(sheet, view, display, now)
+                warn(sheet, doubts, top)
                 yield sheet.picture()
 
 

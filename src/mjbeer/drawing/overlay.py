@@ -1,6 +1,7 @@
 """What is drawn over the pictures of a motion to explain it: words above, marks at the can, numbers on the board."""
 
 import math
+import textwrap
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, Self
@@ -58,6 +59,7 @@ STRIP = 10  # height of the charts below a picture
 NOTE = 3  # height of a note, at the top of the scene
 _RIM, _CENTRE, _GHOST, _FILMED = (0.79, 0.12, 0.16), (0.42, 0.21, 0.0), (0.25, 0.33, 0.45), (0.85, 0.0, 0.35)
 """Colours of the path of a point on the rim, of that of the centre of mass, of the ghost, and of measured places."""
+_DOUBT = (0.72, 0.05, 0.05)  # colour of what is said of a run that is not to be relied on
 _NORMAL, _FRICTION = (0.0, 0.45, 0.30), (0.62, 0.20, 0.55)  # colours of the forces
 _LEGENDS: dict[Mark, tuple[tuple[str, Colour, str], ...]] = {  # sign, colour, meaning; in the order of drawing
     "ghost": (("- -", _GHOST, "a {} that accelerates evenly"),),
@@ -135,6 +137,18 @@ def note(sheet: Sheet, notes: Mapping[str, Sequence[tuple[float, float]]], time:
     if words:
         place = np.array([1.2, NOTE / 2]) * sheet.unit + [0, top]
         sheet.plate(place, [words], INK, (0, 0.5), ground=(1.0, 0.95, 0.72))
+
+
+def warn(sheet: Sheet, doubts: Sequence[str], top: int) -> None:
+    """Say below a row `top` that what is shown is not to be relied on, and why; nothing if there are no `doubts`.
+
+    Of each doubt the picture has what comes before its parentheses, in which is what would be trusted.
+    """
+    if doubts:
+        letters = int((sheet.width / sheet.unit - 4) / 0.65)  # of a line; the mean letter is 0.6 units wide
+        lines = [line for doubt in doubts for line in textwrap.wrap(doubt.partition(" (")[0], letters)]
+        place = sheet.unit * np.array([1.2, 0.6]) + [0, top]
+        sheet.plate(place, ["Not to be relied on", *lines], _DOUBT, (0, 0), ground=(1.0, 0.9, 0.88))
 
 
 LONGEST = 1.6  # longest arrow of a force, in radii; that of the weight is 1. Only the blow of a landing would be longer

@@ -52,12 +52,14 @@ def charts(trajectory: Trajectory, names: Sequence[str]) -> list[Chart]:
         times = np.linspace(trajectory.time[0], trajectory.time[-1], 1500)
         with contextlib.suppress(MjbeerError):  # a start that rounding decides has no exact motion
             theory = exact_motion(trajectory.scene, times, trajectory.phi0, trajectory.phi_dot0)
+            rolls = theory.time <= theory.rolls_until()  # later the incline would have to pull
+            if np.count_nonzero(rolls) < 2:
+                theory = None
     source, drawn = "exact theory" if trajectory.rolling == "exact" else "MuJoCo", []
     for name in names:
         title, values, limits = QUANTITIES[name]
         lines = [Line(source, trajectory.time, values(trajectory), COLOURS[0])]
         if theory is not None:
-            rolls = theory.time <= theory.rolls_until()  # later the incline would have to pull
             lines.append(Line("theory", theory.time[rolls], values(theory)[rolls]))
         if name == "normal" and trajectory.rolling == "contact":
             title = f"N [weights], {1e3 * np.ptp(trajectory.time) / _INTERVALS:.2g} ms means"

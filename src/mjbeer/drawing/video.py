@@ -55,6 +55,9 @@ def render(
     the whole motion), "pan" (it moves with a constant acceleration), or "auto" (fixed, unless the can would be too
     small). If `progress` is true and standard error is a terminal, it shows a progress bar.
 
+    Where the equations of a run were not solved, each picture says so. A run of a fixed timestep is judged by a second
+    one, which takes twice its time.
+
     Raises:
       ParameterError: if a parameter is not allowed.
       RenderingError: if OpenGL or ffmpeg does not work; the message says what to do.
@@ -167,7 +170,8 @@ class PlotJob:
 def produce(orders: Sequence[Any], console: rich.console.Console) -> list[Any]:
     """Write what is ordered, with a progress bar, and return what the orders' `write` returns; begin with the first.
 
-    An order can be pickled, and has a `path`: its file, which it writes whole or not at all, or one of its name.
+    An order can be pickled, and has a `path`: its file, which it writes whole or not at all, or one of its name. A
+    process that is ended while it writes leaves a hidden file beside it: the folder must be one that goes then.
 
     Raises:
       RenderingError: if ffmpeg or OpenGL does not work, or a process dies; the message says what to do.
@@ -182,10 +186,6 @@ def produce(orders: Sequence[Any], console: rich.console.Console) -> list[Any]:
             return [future.result() for future in futures]
     except BrokenProcessPool as error:
         raise RenderingError("a process that drew or checked died; is memory short?") from error
-    finally:  # a process that was ended while it wrote leaves a hidden file
-        for order in orders:
-            for unfinished in order.path.parent.glob(f".{order.path.stem}-*"):
-                unfinished.unlink(missing_ok=True)
 
 
 def _done(order: Any) -> Any:

@@ -46,8 +46,11 @@ def compile_and_keep(function: Callable[..., Any], **options: Any) -> Any:
 
 
 def _folder() -> pathlib.Path:
-    """Return the folder for these sources, in that which numba itself would take: one that can be written to."""
-    content = hashlib.sha256()
+    """Return the folder for these sources, in that which numba itself would take: one that can be written to.
+
+    Each user has one: what another user has made there need not let this one write.
+    """
+    content = hashlib.sha256(str(os.getuid() if hasattr(os, "getuid") else "").encode())
     for path in SOURCES:
         content.update(path.read_bytes())
     return pathlib.Path(njit(_folder, cache=True).stats.cache_path, _PREFIX + content.hexdigest()[:16])

@@ -12,7 +12,7 @@ import warnings
 import mujoco
 
 from mjbeer import require
-from mjbeer.exceptions import ParameterError, TemplateError, UnsupportedError, UntrustedWarning
+from mjbeer.exceptions import ParameterError, TemplateError, UntrustedWarning
 from mjbeer.model import check, looks, mjcf_file
 from mjbeer.model.free import standing_spec
 from mjbeer.model.joints import initial_joints
@@ -155,10 +155,7 @@ def add_start(spec: mujoco.MjSpec, scene: Scene, phi0: float, phi_dot0: float) -
 
 def compile_spec(spec: mujoco.MjSpec, rigid: bool = False) -> mujoco.MjModel:
     """Return the model that a specification compiles to, in which a joint equality is made `rigid` if asked for."""
-    try:
-        model = spec.compile()
-    except ValueError as error:
-        raise _refused("; ".join(str(error).splitlines())) from error
+    model = mjcf_file.compile_spec(spec)
     if rigid:
         _make_rigid(model)
     return model
@@ -194,9 +191,9 @@ def write_numbers(model: mujoco.MjModel, data: mujoco.MjData, mechanics: Mechani
     if mechanics.setting.rolling == "equality":
         _make_rigid(model)
     if min(min(body.mass, body.inertia) for body in mechanics.bodies.values()) < mujoco.mjMINVAL:
-        raise _refused("mass and inertia of moving bodies must be larger than mjMINVAL")
+        raise mjcf_file.refused("mass and inertia of moving bodies must be larger than mjMINVAL")
     if data.warning[mujoco.mjtWarning.mjWARN_INERTIA].number:
-        raise _refused("masses and inertias are too unequal for it to compute accelerations")
+        raise mjcf_file.refused("masses and inertias are too unequal for it to compute accelerations")
     mujoco.mj_resetData(model, data)
 
 
@@ -211,7 +208,3 @@ def _make_rigid(model: mujoco.MjModel) -> None:
     model.opt.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_DIAGEXACT)
     model.opt.solver = mujoco.mjtSolver.mjSOL_PGS
     model.opt.iterations, model.opt.tolerance = 1, 0.0
-
-
-def _refused(reason: str) -> UnsupportedError:
-    return UnsupportedError(f"MuJoCo cannot represent this scene: {reason}")

@@ -37,8 +37,8 @@ def export(
     The parameters are those of `simulate`, but the integrator must be one of MuJoCo's, and the file's name must end in
     .xml. A reduced model of a frozen load turns on the spot, because its one coordinate is phi.
 
-    With `portable`, MuJoCo 3.3.1, MJX, mujoco_warp and dm_control load the file too. The integrator must then be one of
-    `PORTABLE`, the scene must have no drag and no damping but in proportion to a rate, and a contact is softer:
+    With `portable`, MuJoCo from 3.3.4 on, MJX, mujoco_warp and dm_control load the file. The integrator must then be
+    one of `PORTABLE`, the scene must have no drag and no damping but in proportion to a rate, and a contact is softer:
     docs/portability.md has the errors.
 
     A `standing` can is written with the floor that it stands on, or without `free` as one that is held. It has no other

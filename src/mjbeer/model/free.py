@@ -79,6 +79,9 @@ def attach(
     if len(coefficients) > 3 or np.any(coefficients < 0):
         raise ParameterError(f"friction must be 1, 2 or 3 numbers of 0 or more, got {require.format_value(friction)}")
     child, option = _specification(can), parent.option
+    if free:
+        child.body("can").add_freejoint(name="free")
+    mjcf_file.compile_spec(child.copy())
     if option.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL:
         option.cone = child.option.cone
     touching = child.geom("can")
@@ -93,8 +96,6 @@ def attach(
         touching.solref = [mechanics.stiffest(integrator, option.timestep, contact=True), 1]
     reasons = _spoiling_options(option, can) + _mass_bounds(parent.compiler, child)
     child.option, child.visual.map.zfar = parent.option, parent.visual.map.zfar  # MuJoCo warns of what differs
-    if free:
-        child.body("can").add_freejoint(name="free")
     attached = parent.body(body).add_frame(pos=pos, quat=quat).attach_body(child.body("can"), prefix, "")
     if reasons:
         warnings.warn(f"the parent's options spoil the can: {'; '.join(reasons)}", UntrustedWarning, stacklevel=2)
@@ -193,8 +194,26 @@ def _fastest_decay(can: Standing | Scene) -> float:
 
 
 def _bob_shares(can: Standing) -> np.ndarray:
-    """Return the share of each pendulum's inertia that its bob has about itself."""
-    return np.maximum(_BOB[0], _BOB[1] * can.damping_ratios())
+    """Return the share of each pendulum's inertia that its bob has about itself.
+
+    A share s makes a bob heavier by m s / (1 - s), as if so much of what does not slosh were moved to the pivot. Half
+    of the mass and of the inertia of that part are left, which is light in a shallow liquid.
+    """
+    masses = can.slosh_masses()
+    if len(masses) == 0:
+        return masses
+    wanted = np.maximum(_BOB[0], _BOB[1] * can.damping_ratios())
+    moved = masses * wanted / (1 - wanted)
+    pivots = can.pivots() - can.height / 2
+    bobs = pivots - can.gravity / can.frequencies() ** 2
+    mass, first, second = can.fixed_moments() - [masses.sum(), masses @ bobs, masses @ bobs**2]
+    middle = first / mass
+    inertia = second - mass * middle**2
+    # Without masses d_n at distances r_n from its middle, that part keeps I - sum(d_n r_n^2) less what the shift of its
+    # middle takes: together no less than I - sum(d_n r_n^2) / (1 - sum(d_n) / m), by Schwarz's inequality.
+    most = min(mass / 2 / moved.sum(), inertia / 4 / (moved @ (pivots - middle) ** 2))
+    moved *= min(1.0, most)
+    return moved / (masses + moved)
 
 
 def _specification(can: Standing | Scene, visuals: bool = True) -> mujoco.MjSpec:
@@ -221,7 +240,7 @@ def standing_spec(can: Standing, setting: Setting, visuals: bool, free: bool) ->
     for parent, each in first:
         parent.remove(each)
         text = ET.tostring(each, encoding="unicode")
-        parent.extend(ET.fromstring(text.replace("slosh1", f"slosh{mode}")) for mode in range(1, can.modes + 1))
+        parent.extend(ET.fromstring(text.replace("slosh1", f"slosh{mode}")) for mode in range(1, can.moving_modes + 1))
     options = {("option", "integrator"): integrator, ("option", "timestep"): (setting.timestep,)}
     mjcf_file.write(root, standing_parameters(can) | options, path)
     return looks.to_spec(root, path, can, visuals)
@@ -266,7 +285,7 @@ def standing_parameters(can: Standing) -> mjcf_file.Parameters:
         found[f"joint {name}", "damping"] = damper, 0, cubic
         found[f"site {name}_rise", "pos"] = 0, 0, -rise
     level = second - first**2 / mass
-    axial = can.mass * shell.radius**2 / 2 if can.modes == 0 else 1e-9 * level  # nothing drags the liquid along
+    axial = can.mass * shell.radius**2 / 2 if can.moving_modes == 0 else 1e-9 * level  # nothing drags the liquid along
     return found | _inertial("liquid", mass, middle + first / mass, (level, level, axial))
 
 

@@ -128,7 +128,7 @@ def beer_column(standing: Standing) -> dict[str, tuple[float, float, float]]:
     narrower than the can. Where there is no such face, as in a nearly full can, the column is all that is seen.
     """
     height, radius, length = standing.height, standing.can.radius, standing.can.length
-    if standing.modes == 0:
+    if standing.moving_modes == 0:
         return {"beer": (0.0, height, radius)}
     pivot, thickness = standing.pivots(1)[0], min(0.2 * radius, height / 4)
     top, ball, dot = height - pivot, min(radius, pivot, length - pivot), 1e-4 * radius
@@ -152,16 +152,22 @@ def _fit_sizes(spec: mujoco.MjSpec, can: Can, assets: pathlib.Path) -> None:
     spec.stat.extent *= size
     spec.stat.center *= size
     for mesh in spec.meshes:
-        vertices, faces, mesh.usertexcoord = _shape(assets / mesh.file)
+        path = assets / mesh.file
+        try:
+            content = path.read_bytes()
+        except OSError as error:
+            raise TemplateError(f"{path} is no mesh that can be read: {error}") from error
+        vertices, faces, mesh.usertexcoord = _shape(path, content)
         _reshape(mesh, (vertices * mesh.scale * stretch, faces))
     spec.meshdir = ""
 
 
 @functools.lru_cache(maxsize=32)
-def _shape(path: pathlib.Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return vertices, faces, and places in a texture as one row, of a mesh, as MuJoCo reads them from a file."""
+def _shape(path: pathlib.Path, content: bytes) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return vertices, faces, and places in a texture as one row, of a mesh, as MuJoCo reads a file of this content."""
     spec = mujoco.MjSpec()
-    spec.add_mesh(name="mesh", file=str(path.resolve()), inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL)
+    spec.assets = {path.name: content}
+    spec.add_mesh(name="mesh", file=path.name, inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL)
     spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname="mesh")
     try:
         model, turned = spec.compile(), np.zeros(9)

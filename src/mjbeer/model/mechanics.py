@@ -12,6 +12,7 @@ from functools import cached_property
 from typing import NamedTuple, TypeAlias
 
 from mjbeer.exceptions import UnsupportedError
+from mjbeer.model import mjcf_file
 from mjbeer.model.mjcf_file import Parameters
 from mjbeer.model.setting import OWN, Setting
 from mjbeer.theory.scene import Scene
@@ -66,9 +67,13 @@ class Mechanics:
 
     @cached_property
     def structure(self) -> Structure:
-        """Return what decides which elements and flags the model has."""
+        """Return what decides which elements and flags the model has: the text of its file, above all.
+
+        Raises:
+          TemplateError: if the file is missing or not readable.
+        """
         scene, setting = self.scene, self.setting
-        return setting.folder, setting.rolling, scene.attachment, self.acting, scene.dissipates
+        return mjcf_file.content(self.path), setting.rolling, scene.attachment, self.acting, scene.dissipates
 
     @cached_property
     def parameters(self) -> Parameters:

@@ -21,9 +21,9 @@ _saved: list[tuple[bool, bool, int | None]] = []
 def quiet() -> Generator[None]:
     """Stop MuJoCo from printing warnings, from writing MUJOCO_LOG.TXT, and from reading the clock for `mjData.timer`.
 
-    Errors are raised as usual. The clock takes longer than a step of a model with one or two joints; an MjData that is
-    made in the block installs it again. The settings belong to the process: runs in several threads share them until
-    the last one ends. To change them takes longer than a hundred steps: enter this once a run.
+    Errors are raised as usual. The clock takes longer than a step of a model with one or two joints. The settings
+    belong to the process: runs in several threads share them until the last one ends. To change them takes as long as
+    ten such steps: enter this once a run.
     """
     with _lock:
         _saved.append(_saved[0] if _saved else _set(console=False, file=False, clock=None))

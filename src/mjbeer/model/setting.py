@@ -91,4 +91,4 @@ def mjcf_folder(own: str | os.PathLike[str] | None = None) -> pathlib.Path:
         return _SHIPPED
     if not isinstance(own, (str, os.PathLike)) or not os.path.isdir(own):
         raise ParameterError(f"mjcf must be a folder of mechanics and looks, got {require.format_value(own)}")
-    return pathlib.Path(own)
+    return pathlib.Path(own).absolute()  # where it is now, whatever the working folder is when it is read

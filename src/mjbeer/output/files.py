@@ -4,6 +4,7 @@ import os
 import pathlib
 import secrets
 import signal
+import stat
 import threading
 from collections.abc import Generator
 from contextlib import contextmanager
@@ -17,13 +18,13 @@ def atomic_write(path: str | os.PathLike[str]) -> Generator[pathlib.Path]:
     """Yield a new hidden file beside `path` to write to; at the end it replaces `path`, or is deleted after an error.
 
     Enter this block before a long run, so that a path that cannot be written fails at once. If the machine stops,
-    `path` is either the complete new file or the old one.
+    `path` is either the complete new file or the old one, whose permissions the new one has.
 
     Raises:
       OutputError: if `path` is a folder, a device or read-only, or its folder does not exist or its disk is full.
     """
     target = pathlib.Path(os.path.realpath(path))  # a link is kept, and the file that it points to is replaced
-    with _output_errors(path, target.parent):
+    with output_errors(path, target.parent):
         if target.exists() and not target.is_file():
             raise OutputError(f"cannot write {path}: it is {'a folder' if target.is_dir() else 'not a regular file'}")
         if target.exists() and not os.access(target, os.W_OK):  # renaming would replace it although it is read-only
@@ -31,6 +32,7 @@ def atomic_write(path: str | os.PathLike[str]) -> Generator[pathlib.Path]:
         temporary = target.with_name(f".{target.stem}-{secrets.token_hex(4)}{target.suffix}")
         try:
             temporary.touch(exist_ok=False)
+            _take_permissions(target, temporary)  # before anything is in it that others must not read
             yield temporary
             with temporary.open("rb+") as file:
                 os.fsync(file.fileno())
@@ -39,8 +41,19 @@ def atomic_write(path: str | os.PathLike[str]) -> Generator[pathlib.Path]:
             temporary.unlink(missing_ok=True)
 
 
+def replace(new: pathlib.Path, old: pathlib.Path) -> None:
+    """Rename a new file so that it replaces an old one, if there is one, with the old one's permissions."""
+    _take_permissions(old, new)
+    new.replace(old)
+
+
+def _take_permissions(old: pathlib.Path, new: pathlib.Path) -> None:
+    if old.exists():
+        new.chmod(stat.S_IMODE(old.stat().st_mode))
+
+
 @contextmanager
-def _output_errors(path: str | os.PathLike[str], folder: pathlib.Path) -> Generator[None]:
+def output_errors(path: str | os.PathLike[str], folder: pathlib.Path) -> Generator[None]:
     """Raise what the system has against a path as an `OutputError`; a folder that may be misspelt is not made."""
     try:
         yield
@@ -68,7 +81,7 @@ def make_folder(folder: pathlib.Path) -> None:
     Raises:
       OutputError: if it cannot be made.
     """
-    with _output_errors(folder, folder.absolute().parent):
+    with output_errors(folder, folder.absolute().parent):
         folder.mkdir(exist_ok=True)
 
 

@@ -90,8 +90,10 @@ def printing() -> Generator[None]:
     """Flush standard output at the end of the block, so that an error in writing is raised here.
 
     Raises:
-      OutputError: if standard output cannot be written to, such as a closed pipe or a full disk.
+      OutputError: if standard output cannot be written to: it is closed, a pipe that nobody reads, or a full disk.
     """
+    if sys.stdout is None:  # as after `>&-`: the next file that is opened would take its place
+        raise OutputError("cannot write to standard output: it is closed")
     try:
         try:
             yield

@@ -15,7 +15,8 @@ from scipy.optimize import brentq, minimize_scalar
 from mjbeer.model.setting import Rolling
 from mjbeer.paper.claim import Bound, Claim, Limit, Witness
 from mjbeer.paper.witness import CONTACT, GRIP
-from mjbeer.simulation.simulate import Run, simulate
+from mjbeer.simulation.run import Run
+from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.scene import Scene, hoop
 
 RATIO = 1 / 20  # M/m of the hoop that hops

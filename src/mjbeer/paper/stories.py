@@ -183,10 +183,9 @@ def films(folder: pathlib.Path) -> list[FilmJob]:
 
 
 def write(folder: pathlib.Path, filmed: bool, console: Console) -> str:
-    """Write a plot of each story (SVG), its film if asked for (MP4), and stories.md, each whole or not at all.
+    """Write a plot of each story (SVG), its film if asked for (MP4), and stories.md into a folder.
 
-    stories.md of an earlier run goes first. Return the line that says which films were asked for and are missing
-    because there is no OpenGL, or "".
+    Return the line that says which films were asked for and are missing because there is no OpenGL, or "".
 
     Raises:
       OutputError: if the folder cannot be written to.
@@ -194,17 +193,13 @@ def write(folder: pathlib.Path, filmed: bool, console: Console) -> str:
     """
     orders = films(folder) if filmed else []
     missing = opengl.missing([order.path.name for order in orders]) if orders and opengl.problem() else ""
-    files.make_folder(folder)
-    with files.atomic_write(folder / "stories.md") as summary:
-        (folder / "stories.md").unlink(missing_ok=True)
-        files.write(folder / "letters.svg", letters())
-        video.produce(
-            [*([] if missing else orders), *(PlotJob(story.plot, folder / story.name) for story in STORIES)], console
-        )
-        lines = ["# The paper's stories", "", "![The letters of the formulas](letters.svg)", ""]
-        lines += [f"Films: {missing}", ""] if missing else []
-        for story in STORIES:
-            lines += [f"## {story.name}", "", f"![{story.name}]({story.name}.svg)", "", story.caption, ""]
-            lines += [f"[Film]({story.name}.mp4)", ""] if filmed and not missing and story.film is not None else []
-        summary.write_text("\n".join(lines), encoding="utf-8")
+    files.write(folder / "letters.svg", letters())
+    plots = [PlotJob(story.plot, folder / story.name) for story in STORIES]
+    video.produce(plots if missing else [*orders, *plots], console)
+    lines = ["# The paper's stories", "", "![The letters of the formulas](letters.svg)", ""]
+    lines += [f"Films: {missing}", ""] if missing else []
+    for story in STORIES:
+        lines += [f"## {story.name}", "", f"![{story.name}]({story.name}.svg)", "", story.caption, ""]
+        lines += [f"[Film]({story.name}.mp4)", ""] if filmed and not missing and story.film is not None else []
+    files.write(folder / "stories.md", "\n".join(lines))
     return missing

@@ -45,7 +45,7 @@ _RAISED = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 
 
 def write(folder: pathlib.Path, quick: bool, console: Console) -> tuple[Validation, str]:
-    """Write index.html and live.html into a folder, each whole or not at all; that of an earlier report goes first.
+    """Write index.html, live.html and the maps that lie beside it into a folder.
 
     Quickly, the films are smaller and the stories have plots and no films. Where there is no OpenGL, there are no
     films. What comes back is the validation, and the line that says which films are missing, or "".
@@ -54,9 +54,7 @@ def write(folder: pathlib.Path, quick: bool, console: Console) -> tuple[Validati
       OutputError: if the folder cannot be written to.
       RenderingError: if a film cannot be drawn for another reason.
     """
-    files.make_folder(folder)
-    with files.atomic_write(folder / "index.html") as index, tempfile.TemporaryDirectory() as work:
-        (folder / "index.html").unlink(missing_ok=True)
+    with tempfile.TemporaryDirectory() as work:
         filmed = films.film_jobs(pathlib.Path(work), quick)
         not_drawn = opengl.missing([each.path.stem for each in filmed]) if opengl.problem() else ""
         filmed = [] if not_drawn else filmed
@@ -67,7 +65,7 @@ def write(folder: pathlib.Path, quick: bool, console: Console) -> tuple[Validati
         shown = {each.path.stem: (each.path.read_bytes(), still) for each, still in zip(filmed, stills, strict=True)}
         pictures = {plot.name: plot for plot in plots if plot}
         files.write(folder / "live.html", next(filter(pathlib.Path.is_file, _LIVE)).read_text(encoding="utf-8"))
-        index.write_text(page(validation, shown, pictures, quick, not_drawn), encoding="utf-8")
+        files.write(folder / "index.html", page(validation, shown, pictures, quick, not_drawn))
     return validation, not_drawn
 
 

@@ -96,9 +96,7 @@ _SLOPES = _POWERS * _SHARES[:, np.newaxis] ** (_POWERS - 1) @ _COEFFICIENTS
 """What gives the change since the beginning and the slope at the points within a step, from the five conditions."""
 
 
-def _within(
-    step: np.ndarray, value: np.ndarray, slope: np.ndarray, bend: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
+def _within(step: np.ndarray, value: np.ndarray, slope: np.ndarray, bend: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the change of a coordinate since the beginning of each step, and its slope, at the points within.
 
     Given are the lengths of the steps [s], shape (steps, 1), and at their ends the coordinate and its first and second

@@ -10,7 +10,6 @@ from mjbeer import require
 from mjbeer.model.setting import Setting
 from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.record import ERROR, Diagnosis, Record, diagnose
-from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
 
 _MAX_TURN_PER_STEP = 2.0

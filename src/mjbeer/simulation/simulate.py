@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mjbeer import require
-from mjbeer.exceptions import LiquidWarning, ParameterError, ToleranceError, UntrustedWarning
+from mjbeer.exceptions import LiquidWarning, ParameterError, UntrustedWarning
 from mjbeer.model.joints import to_coordinates
 from mjbeer.model.setting import FRICTION, OWN, Integrator, Rolling, Setting
 from mjbeer.simulation.methods import mechanics
@@ -129,7 +129,7 @@ def _sample_times(duration: float | None, setting: Setting, times: np.ndarray) -
 def integrate(scene: Scene, phi0: float, phi_dot0: float, setting: Setting, times: np.ndarray) -> Run:
     """Return the motion of a scene in a setting at increasing `times` [s], with the same errors as `simulate`.
 
-    The model starts less whole turns away from phi = 0, where its angles keep their digits; the samples have them again.
+    The model starts less whole turns away from phi = 0, where angles keep their digits; the samples have them again.
     """
     near_phi0 = reduced(phi0)
     checked = _check_times(setting, times)
@@ -137,6 +137,7 @@ def integrate(scene: Scene, phi0: float, phi_dot0: float, setting: Setting, time
     start = stepped.initial_state(near_phi0, phi_dot0)
     solution = solve(stepped, setting, start, checked, math.inf, turns_rounding(phi0))
     motion = to_coordinates(stepped.model, scene, solution.states, checked)
+    stepped.check(motion)
     samples = np.searchsorted(checked, times)
     arrays = {name: array[samples] for name, array in vars(motion).items()}
     turns = phi0 - near_phi0

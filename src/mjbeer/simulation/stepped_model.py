@@ -8,9 +8,11 @@ import mujoco
 import numpy as np
 
 from mjbeer.model.build import compiled_model, write_numbers
+from mjbeer.model.check import check_run, is_edited
 from mjbeer.model.joints import initial_state
 from mjbeer.model.mechanics import Mechanics, Structure
 from mjbeer.model.mjcf_file import compiled_views
+from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.scene import Scene
 
 if TYPE_CHECKING:
@@ -29,6 +31,7 @@ class SteppedModel:
         self.data = mujoco.MjData(self.model)
         self._views = compiled_views(self.model, mechanics.parameters)
         self._written: Mechanics | None = None
+        self._edited = is_edited(mechanics)
         self.write(mechanics)
 
     @property
@@ -59,6 +62,15 @@ class SteppedModel:
     def initial_state(self, phi0: float, phi_dot0: float) -> np.ndarray:
         """Return the state of a start at `phi0` [rad] with `phi_dot0` [rad/s], shape (nq + nv,)."""
         return initial_state(self.model, self.scene, phi0, phi_dot0)
+
+    def check(self, motion: Coordinates) -> None:
+        """Compare the MJCF with theory at the states of a run of this scene, unless it is mjbeer's own.
+
+        Raises:
+          TemplateError: if it does not move as theory says there.
+        """
+        if self._edited and self._written is not None:
+            check_run(self._written, motion)
 
 
 class _Kept(threading.local):

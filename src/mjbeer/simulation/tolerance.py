@@ -24,8 +24,8 @@ SAFETY = 10.0
 ROUNDING = 0.3
 """Estimated effect of all rounding divided by that of the nudge."""
 DRIFT = 1.5
-"""Error of phi divided by that which the drift of the swing's energy implies at most: 0.5 for rotations and small swings,
-up to 2 for swings of 2.85 rad, where the distance of the runs shows how much the motion amplifies."""
+"""Largest error of phi divided by that which the drift of the swing's energy implies: 0.5 for rotations and small
+swings, up to 2 for swings of 2.85 rad, where the distance of the runs shows how much the motion amplifies."""
 COMPARED = 256
 """Samples at which two runs are compared, if there are more: an error changes within a part of a swing."""
 
@@ -94,11 +94,11 @@ def solve_to_tolerance(
                 states = method.run(problem.start, problem.times, recorder)
                 fine = states[compared]
                 record = recorder.record
-                apart = SAFETY * _distance(problem, coarse, fine)
+                apart = SAFETY * largest_distance(problem, coarse, fine)
                 error = max(apart, DRIFT * record.swing_error, record.axis_error)
                 if error <= tolerance:
                     aside = coarse_method.run(problem.nudged_start, some_times)
-                    rounding = ROUNDING * _distance(problem, coarse, aside)
+                    rounding = ROUNDING * largest_distance(problem, coarse, aside)
                     if rounding > tolerance:
                         raise not_reached(tolerance, f"the rounding of the start grows to {rounding:.2g} rad")
                     return Solution(states, record, max(error, rounding), method.name)
@@ -113,7 +113,7 @@ def solve_to_tolerance(
     )
 
 
-def _distance(problem: Problem, coarse: np.ndarray, fine: np.ndarray) -> float:
+def largest_distance(problem: Problem, coarse: np.ndarray, fine: np.ndarray) -> float:
     """Return the largest distance of two runs in phi or u/a [rad], relative to the angle turned where that is beyond 1.
 
     The distance from what is no number is infinite.

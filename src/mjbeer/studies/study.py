@@ -9,14 +9,14 @@ import warnings
 from collections.abc import Callable, Generator, Iterable, Sequence
 from concurrent.futures import as_completed
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import closing, contextmanager
+from contextlib import closing
 from dataclasses import dataclass, field
 from importlib.metadata import distributions
 from typing import Any
 
 from rich.console import Console
 
-from mjbeer.exceptions import OutputError, ParameterError
+from mjbeer.exceptions import ParameterError
 from mjbeer.output import files
 from mjbeer.output.terminal import progress_bar
 from mjbeer.paper.checks import Check, Result, to_json
@@ -73,46 +73,40 @@ class Study:
         files.write(path, "".join(map(to_json, [self.about, *(result.as_json() for result in self.results)])))
 
 
-@contextmanager
-def locked(folder: pathlib.Path) -> Generator[None]:
-    """Lock a folder while the block runs, so that no other command changes the study in it meanwhile.
-
-    The system releases the lock when the process ends, even if it is killed; the hidden file of the lock stays.
-
-    Raises:
-      OutputError: if another command holds the lock, or the folder cannot be created.
-    """
-    from filelock import FileLock, Timeout  # which takes long to import, and which not every command needs
-
-    files.make_folder(folder)
-    try:
-        held = FileLock(folder / ".lock", blocking=False).acquire()
-    except Timeout:
-        raise OutputError(f"cannot write to {folder}: another command is at work there") from None
-    with held:
-        yield
-
-
 def run(
-    checks: Sequence[Check], console: Console | None, path: pathlib.Path, command: str, settings: dict[str, Any]
+    checks: Sequence[Check],
+    console: Console | None,
+    path: pathlib.Path,
+    command: str,
+    settings: dict[str, Any],
+    finished: pathlib.Path | None = None,
 ) -> Study:
     """Measure checks on all cores and return them as a study; `console` shows a progress bar.
 
-    Every result is in the file at `path` as soon as it is there, and a study of the same settings on the same machine
-    that is in it is gone on with. Functions that measure must be ones that can be pickled.
+    Every result is in the file at `path` as soon as it is there, and the study that is in it is gone on with. So is
+    that in the file at `finished`, which stays as it is, if its settings and its machine are the same. Functions that
+    measure must be ones that can be pickled.
 
     Raises:
       OSError: if the system ends one of the processes.
       OutputError: if the file cannot be written.
-      ParameterError: if the file is there, but is no study of this command.
+      ParameterError: if a file is there, but is no study of this command, or the one at `path` is of other settings or
+        of another machine.
     """
     study = Study(command, settings, machine())
-    if path.exists():
-        stored = Study.load(path, command)
+    for kept in (path, finished):
+        if kept is None or not kept.exists():
+            continue
+        stored = Study.load(kept, command)
         if (stored.settings, stored.machine) == (study.settings, study.machine):
             study = stored
             if console is not None:
-                console.print(f"going on from {path}", highlight=False, markup=False, soft_wrap=True)
+                console.print(f"going on from {kept}", highlight=False, markup=False, soft_wrap=True)
+            break
+        if kept == path:
+            raise ParameterError(
+                f"{path} has a study of other settings, or of another machine: remove it, or name another folder"
+            )
     study.save(path)
     done = {(result.group, result.name): result for result in study.results}
     missing = [check for check in checks if (check.group, check.name) not in done]

@@ -21,7 +21,7 @@ from mjbeer.exceptions import LiquidWarning, ParameterError
 from mjbeer.model.setting import FRICTION, OWN, Integrator, Rolling, Setting
 from mjbeer.output import files
 from mjbeer.output.terminal import STDERR, progress_bar
-from mjbeer.simulation.simulate import Run
+from mjbeer.simulation.run import Run
 from mjbeer.studies.sweep_runs import ALWAYS, NOT_YET, PERIOD, STATUSES, Work, collect_liquid_warnings, measure, run_all
 from mjbeer.theory.scene import Scene
 

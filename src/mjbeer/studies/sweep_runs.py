@@ -14,7 +14,8 @@ import numpy as np
 from mjbeer import require
 from mjbeer.exceptions import DivergenceError, MjbeerError, ParameterError, ToleranceError, warn_of_liquid
 from mjbeer.model.setting import Setting
-from mjbeer.simulation.simulate import Run, integrate
+from mjbeer.simulation.run import Run
+from mjbeer.simulation.simulate import integrate
 from mjbeer.theory.scene import Scene
 
 _PIECE, _LARGEST_PIECE = 0.25, 256
@@ -30,7 +31,7 @@ ALWAYS: dict[str, tuple[Callable[[Run], Any], str, str]] = {
     "lowest_normal": (lambda run: run.record.lowest_normal, "N", "lowest normal force"),
     "friction_needed": (lambda run: run.record.needed_friction, "", "friction coefficient needed"),
     "parting_time": (lambda run: run.record.rolling_ends_at, "s", "time from which N < 0"),
-    "energy_drift": (lambda run: run.energy_drift, "", "energy drift over the swing's kinetic energy"),
+    "energy_drift": (lambda run: run.energy_drift, "", "largest change of energy over the swing's kinetic energy"),
 }
 """The quantities that every sweep has, besides whether a run is trusted and its status: what measures each, its unit,
 and what it is in words."""
@@ -114,6 +115,9 @@ def _outcome(work: Work, varied: Mapping[str, float]) -> tuple[list[float], str]
             values[place] = float(of(run))
         except Exception as error:
             status, reason = NO_VALUE, f"{name}: {_in_a_line(error)}"
+        else:
+            if math.isnan(values[place]):
+                status, reason = NO_VALUE, f"{name}: it is not a number (NaN)"
     if status == WELL and (beyond := (*run.rolling_warnings, *run.liquid_warnings)):
         status, reason = BEYOND, "; ".join(beyond)
     return [*values, trusted, status], reason

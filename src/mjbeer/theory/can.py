@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mjbeer import require
+from mjbeer.exceptions import ParameterError
 
 RADIUS = 0.033  # of a 12-oz can [m]; paper, after eq. (31)
 LENGTH = 0.12  # of a 12-oz can [m]; paper, after eq. (31)
@@ -41,6 +42,9 @@ class Can:
             mass=require.within("can mass", self.mass, *require.MASS, "kg", zero=True),
             inertia=require.non_negative("can inertia", self.inertia, "kg m^2"),
         )
+        if self.mass == 0 and self.inertia > 0:
+            got = require.format_value(self.inertia)
+            raise ParameterError(f"can inertia must be 0 for a can without mass [kg m^2], got {got}")
         most = require.RATIO * self.mass * self.radius**2
         require.within(f"can inertia with a mass of {self.mass:g} kg", self.inertia, 0, most, "kg m^2")
 
@@ -106,7 +110,7 @@ class Load:
             mass=require.within("load mass", self.mass, *require.MASS, "kg"),
             offset=require.within("load offset", self.offset, 0, require.SIZE[1], "m"),
             inertia=require.non_negative("load inertia", self.inertia, "kg m^2"),
-            fill=None if self.fill is None else require.within("fill", self.fill, *require.FILL),
+            fill=None if self.fill is None else require.fill(self.fill),
         )
 
     @property
@@ -131,7 +135,7 @@ class Load:
           ParameterError: as `Load`.
         """
         can, density = Can(radius, length), require.positive("load density", density, "kg/m^3")
-        fill = require.within("fill", fill, *require.FILL)
+        fill = require.fill(fill)
         shape = segment(fill)
         mass = density * can.length * can.radius**2 * shape.area
         return cls(mass, offset=can.radius * shape.offset, inertia=mass * can.radius**2 * shape.inertia, fill=fill)

@@ -84,13 +84,11 @@ def friction_of_frozen(scene: Any, phi: Value, phi_dot: Value, phi_ddot: Value) 
 
 
 def friction_of_sliding(scene: Any, u_ddot: Value, damping_torque: Value) -> Value:
-    """Return F [N], positive up the incline, of a can with a sliding load: it turns the can, and so does the damping."""
+    """Return F [N], positive up the incline, of a can with a sliding load: it and the damping turn the can."""
     return scene.can_inertia / scene.radius**2 * u_ddot + damping_torque / scene.radius
 
 
-def kinetic_energy(
-    scene: Any, phi: Value, phi_dot: Value, u_dot: Value, roll_dot: Value, lift_dot: Value
-) -> Value:
+def kinetic_energy(scene: Any, phi: Value, phi_dot: Value, u_dot: Value, roll_dot: Value, lift_dot: Value) -> Value:
     """Return the kinetic energy [J] of can and load: eqs. (39) and (44), with slip and lift added."""
     load_along = u_dot - scene.offset * np.cos(phi) * phi_dot
     load_across = lift_dot + scene.offset * np.sin(phi) * phi_dot

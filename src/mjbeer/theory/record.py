@@ -157,9 +157,9 @@ class RecordMaker:
         slip_rate = equations.slip_rate(self._scene, motion.phi_dot, motion.u_dot)
         record.largest_slip_rate = _largest(record.largest_slip_rate, slip_rate)
         if self._scene.damping_law.holds is not None and record.no_lump_at == math.inf:
-            spread = centrifugal_ratio(self._scene, motion.u_dot) > 1
-            if spread.any():
-                record.no_lump_at = float(motion.time[spread.argmax()])
+            spread = np.flatnonzero(centrifugal_ratio(self._scene, motion.u_dot) > 1)
+            if len(spread) > 0:
+                record.no_lump_at = float(motion.time[spread[0]])
 
     def _add_conserved(self, motion: Coordinates, swing: np.ndarray, covered: np.ndarray) -> None:
         """Add how the swing's energy and, of a sliding load, the momentum change that should be conserved."""
@@ -174,9 +174,7 @@ class RecordMaker:
         record.swing_change = _largest(record.swing_change, change)
         record.swing_drift = _largest(record.swing_drift, drift)
         if self._scene.attachment == "sliding":
-            start = InitialState(
-                float(first.phi[0]), float(first.phi_dot[0]), float(first.u[0]), float(first.u_dot[0])
-            )
+            start = InitialState(float(first.phi[0]), float(first.phi_dot[0]), float(first.u[0]), float(first.u_dot[0]))
             since_start = motion.time - first.time
             expected_u, _ = equations.axis_motion(self._scene, since_start, motion.phi, motion.phi_dot, start)
             record.axis_drift = _largest(record.axis_drift, motion.u - expected_u)
@@ -210,7 +208,7 @@ class Margin(NamedTuple):
 
 
 def zero_crossing(before: Margin, after: Margin) -> float:
-    """Return the time [s] at which a margin vanishes, on a line between two; the later one if there is no earlier one."""
+    """Return the time [s] at which the line between two margins vanishes; the later one if there is no earlier one."""
     if not before.time < after.time:
         return after.time
     return before.time + before.force / (before.force - after.force) * (after.time - before.time)

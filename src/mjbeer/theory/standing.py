@@ -49,9 +49,9 @@ class Standing:
     viscosity: float
     """Kinematic viscosity nu [m^2/s]."""
     modes: int = 1
-    """Number of modes that move in the model; with 0 the liquid is solid, as in other models of cans."""
+    """Number of modes that move in the model, unless over-damped (see `moving_modes`); with 0 the liquid is solid."""
     damping_ratio: float | None = None
-    """Damping of every mode over the critical one; None: what the layers on the walls give."""
+    """Damping of every mode over the critical one, with which none moves; None: what the layers on the walls give."""
     gravity: float = GRAVITY
     """Acceleration of gravity [m/s^2]."""
 
@@ -61,7 +61,9 @@ class Standing:
             raise ParameterError(f"a standing can must have mass and inertia, as Can.sheet_metal(), got {self.can!r}")
         fill = require.number("fill", self.fill)
         if not 0 < fill < 1:
-            raise ParameterError(f"fill must be between 0 and 1: a full can has no free surface, got {fill!r}")
+            raise ParameterError(
+                f"fill must be a fraction between 0 and 1 (50 % is 0.5): a full can has no free surface, got {fill!r}"
+            )
         # In thinner films viscosity is everywhere.
         require.within("height of the liquid over the radius", fill * self.can.length / self.can.radius, 0.05, 50.0)
         ratio = self.damping_ratio
@@ -93,10 +95,22 @@ class Standing:
         series = float(np.sum(np.tanh(xi * self.height / (2 * radius)) / (xi**3 * (xi**2 - 1))))
         return self.mass * (self.height**2 / 12 - 0.75 * radius**2 + 16 * radius**3 / self.height * series)
 
+    @property
+    def moving_modes(self) -> int:
+        """Return the number of modes that move in the model: `modes`, or 0 if the first one is over-damped.
+
+        The first mode is the most damped one. Where it does not swing, the layers on the walls fill the liquid, which
+        then moves with the can as a solid.
+        """
+        if self.modes == 0 or self.damping_ratios(1)[0] >= 1:
+            return 0
+        return self.modes
+
     def frequencies(self, count: int | None = None) -> np.ndarray:
         """Return the natural frequencies of the first `count` modes in a can that is held [rad/s], shape (count,).
 
-        By default, here and below, the modes are those that move in the model.
+        They are those without damping. By default, here and below, the modes are those that move in the model, which
+        are none in a liquid that is over-damped; with a `count` they are those of theory, whether they move or not.
         """
         _, _, length = self._pendulums(count)
         return np.sqrt(self.gravity / length)
@@ -150,16 +164,16 @@ class Standing:
         """Return the moments of mass of the model in all, about the centroid: the zeroth, first and second one.
 
         The modes left out are fixed at their pivots, where slow motion has them: sum(m_n L_n) to the first moment
-        [kg m], sum(m_n (p_n^2 - z_n^2)) to the second [kg m^2].
+        [kg m], sum(m_n (p_n^2 - z_n^2)) to the second [kg m^2]. If no mode moves, the liquid is a solid cylinder.
         """
-        if self.modes == 0:
+        if self.moving_modes == 0:
             return np.array([self.mass, 0.0, self.mass * (self.can.radius**2 / 4 + self.height**2 / 12)])
-        mass, bob, length = self._pendulums(SERIES)[:, self.modes :]
+        mass, bob, length = self._pendulums(SERIES)[:, self.moving_modes :]
         second = self.held_inertia + np.sum(mass * ((bob + length) ** 2 - bob**2))
         return np.array([self.mass, np.sum(mass * length), second])
 
     def _xi(self, count: int | None) -> np.ndarray:
-        return _roots()[: self.modes if count is None else _checked_count("count", count, SERIES)]
+        return _roots()[: self.moving_modes if count is None else _checked_count("count", count, SERIES)]
 
     def _pendulums(self, count: int | None) -> np.ndarray:
         """Return masses m_n [kg], heights z_n of the bobs above the centroid [m] and lengths L_n [m], (3, count)."""
@@ -183,7 +197,8 @@ def standing(
     `liquid` is a name that `mjbeer.liquid` knows; the others are fields of `Standing`. By default the damping follows
     from the viscosity, for a clean surface: foam or dust doubles it.
 
-    A `LiquidWarning` says where the layers on the walls are not thin, so that the damping is an order of magnitude.
+    A `LiquidWarning` says where the layers on the walls are not thin, so that the damping is an order of magnitude, and
+    where it is so large that the liquid does not slosh.
 
     Raises:
       ParameterError: if a parameter is not allowed.
@@ -195,7 +210,11 @@ def standing(
         layer = math.sqrt(2 * standing_can.viscosity / standing_can.frequencies(1)[0]) / can.radius
         if layer > 0.1:
             thick = f"{name} is too thick for the damping of thin layers: that on the wall has {layer:.3g} radii"
-            warn_of_liquid.get()(f"{thick}, not 0.1 or less; give a damping_ratio", LiquidWarning, stacklevel=2)
+            thick += ", not 0.1 or less"
+            if standing_can.moving_modes == 0:
+                ratio = standing_can.damping_ratios(1)[0]
+                thick += f", and the liquid does not slosh: its damping is {ratio:.3g} times the critical one"
+            warn_of_liquid.get()(f"{thick}; give a damping_ratio", LiquidWarning, stacklevel=2)
     return standing_can
 
 

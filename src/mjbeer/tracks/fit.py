@@ -9,17 +9,18 @@ import os
 import warnings
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
-from operator import itemgetter
+from operator import attrgetter, itemgetter
 from typing import Any
 
 import numpy as np
-from scipy import fft, interpolate, optimize, special
+from scipy import fft, interpolate, ndimage, optimize, special
 
 from mjbeer import require
 from mjbeer.drawing.words import in_words
 from mjbeer.exceptions import MjbeerError, ParameterError
 from mjbeer.output import terminal
-from mjbeer.simulation.simulate import Run, simulate
+from mjbeer.simulation.run import Run
+from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.scene import Scene
 from mjbeer.tracks.track import Track
 
@@ -32,11 +33,13 @@ _SIZES = {
 _WITHIN = {"incline": (-1.5, 1.5), "fill": (0.01, 0.99), "drag": (0.0, 1.0), "scale": (0.5, 2.0)}
 _TRIED = {"fill": np.linspace(0.05, 0.95, 19), "damping": (0.55, 0.75, 1.3, 1.8), "phi0": np.linspace(-3, 3, 7)}
 """Values that are tried as starts. Incline, damping and release of a late track look alike, and two fills of ice."""
-_STARTS = 6  # that are followed
+_BEGUN = 16  # starts whose first round is fitted
+_STARTS = 6  # those of them that are followed to the end
+_FAR = 6.0  # deviations of noise from which on a point is left out
 BEND = 5e-3  # how far a lens usually bends the picture of a straight board [m]
 LAW_ERROR = 0.1  # relative error of a liquid's damping law itself: of W^1.5 and its polynomial
 _MIDDLE = 1e3  # the solver's variables at the guess, so that they differ by 1e-3 for the derivatives
-_SOLVER: dict[str, Any] = {"ftol": 1e-6, "xtol": 1e-9, "diff_step": 1e-6, "max_nfev": 30}
+_SOLVER: dict[str, Any] = {"ftol": 1e-6, "xtol": 1e-9, "diff_step": 1e-6, "max_nfev": 100}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -164,14 +167,15 @@ def fit(
     # What is warned of is about guesses; the fitted run has its own.
     with warnings.catch_warnings(action="ignore"), terminal.progress_bar(console, 1 + _STARTS) as step:
         step("looking for starts")
-        suited = [each for each in map(problem.suit, problem.tried) if math.isfinite(each["left"])]
-        rough = sorted(suited, key=itemgetter("left"), reverse=True)
-        best = {(values.get("fill"), values.get("damping")): values for values in rough}
-        minima: list[optimize.OptimizeResult] = []
-        for values in sorted(best.values(), key=itemgetter("left"))[:_STARTS]:
-            step("fitting")
+        begun: list[optimize.OptimizeResult] = []
+        for values in problem.starts()[:_BEGUN]:
             with contextlib.suppress(ValueError):  # there is no such motion
-                minima.append(problem.solve(values))
+                begun.append(problem.begin(values))
+        minima: list[optimize.OptimizeResult] = []
+        for found in problem.different(begun)[:_STARTS]:
+            step("fitting")
+            with contextlib.suppress(ValueError):
+                minima.append(problem.round(problem.round(found)))
         if not minima:
             raise MjbeerError(f"no motion of such a scene is like the track, got {scene!r}")
         return problem.result(minima)
@@ -191,6 +195,7 @@ class _Problem:
         self.channels = [name for name in ("along", "roll", "phi") if getattr(track, name) is not None]
         self.data = np.stack([getattr(track, name) for name in self.channels])
         self.span, latest = float(np.ptp(track.time)), float(track.time[-1])
+        self.pace = math.sqrt(scene.can.radius / max(scene.gravity, 1.0))  # a load swings by a radian in 0.8 of it [s]
         self.logarithmic = {"damping", *["incline"] * (scene.attachment == "sliding")} & names
         if "incline" in self.logarithmic and scene.incline * (track.along[-1] - track.along[0]) <= 0:
             raise ParameterError("the can of this track does not roll down the scene's incline: turn the sign of one")
@@ -206,7 +211,13 @@ class _Problem:
         if "incline" in names - {*known} - self.logarithmic:  # its swings are to be in phase with the track's
             factors = (0.8, 1.0) if "phi0" in names else (0.7, 0.85, 1.0, 1.2, 1.5)
             tried["incline"] = [scene.incline * factor for factor in factors]
-        self.tried = [dict(zip(tried, each, strict=True)) for each in itertools.product(*tried.values())]
+        if "fill" in names - {*known} and not scene.dissipates:
+            # Swings that go on for ever get out of step where the frequency is a little off. It grows from 0 to the
+            # largest and falls to 0 again, nearly evenly in the square root of the fill. So many fills are tried that
+            # one between two of them is out of step by a radian at most at either end, if it is in step in the middle.
+            count = math.ceil(0.65 * self.span / self.pace)
+            tried["fill"] = [self.guess["fill"], *np.linspace(0.1, 0.985, min(max(19, count), 150)) ** 2]
+        self.tried = {name: sorted(set(values)) for name, values in tried.items()}
         self.spline = functools.lru_cache(100)(self._spline)
 
     def solved(self, values: Mapping[str, Any]) -> np.ndarray:
@@ -234,7 +245,10 @@ class _Problem:
             linear, quadratic, cubic = (factor * each for each in law.coefficients)
             scene = replace(scene, damping=replace(law, linear=linear, quadratic=quadratic, cubic=cubic))
         phi0 = values.get("phi0", -scene.incline if isinstance(self.phi0, str) else self.phi0)
-        step = 0.25 * math.sqrt(scene.can.radius / max(scene.gravity, 1.0))  # a spline's error is below 1e-6 radii
+        # A spline's error is below 1e-6 radii for swings; it is 1e-4 where the can turns by half a radian from one node
+        # to the next, as it does at the end of an even acceleration.
+        fastest = 2 * float(np.ptp(self.track.along)) / self.span
+        step = min(0.25 * self.pace, 0.5 * scene.can.radius / fastest)
         nodes = np.linspace(0, duration, min(5000, max(50, math.ceil(duration / step))))
         return simulate(scene, duration, phi0, tolerance=1e-5, times=nodes)  # 1e-5 rad are 0.3 micrometres of the way
 
@@ -268,10 +282,39 @@ class _Problem:
         off = kept * (self.model(values) - self.data) / noise
         return np.append(off, [(values[name] - value) / error for name, (value, error) in self.known.items()])
 
-    def suit(self, values: dict[str, float]) -> dict[str, float]:
-        """Return values with place, release and a sliding load's incline that suit best, and what is "left" [m]."""
-        time, along = (each[:: max(1, len(each) // 100)] for each in (self.track.time, self.track.along))
-        released = time[0] + self.span * np.linspace(-1, 0.8, 91)
+    def starts(self) -> list[dict[str, float]]:
+        """Return what was tried: what suits better than all beside it, the best of each fill and damping, and others.
+
+        Twins near the fill of the fastest swing have no ridge between them that the net of what is tried could show.
+        """
+        suited = []
+        for values in itertools.product(*self.tried.values()):
+            suited.append(self.suit(dict(zip(self.tried, values, strict=True))))
+        left = np.nan_to_num([values["left"] for values in suited], nan=math.inf)  # there is no such motion
+        left = left.reshape([len(values) for values in self.tried.values()])
+        lowest = left[left == ndimage.minimum_filter(left, 3, mode="nearest")].tolist()
+        suited = sorted((values for values in suited if math.isfinite(values["left"])), key=itemgetter("left"))
+        best: dict[tuple[float | None, float | None], dict[str, float]] = {}
+        for values in suited:
+            best.setdefault((values.get("fill"), values.get("damping")), values)
+        chosen = [values for values in suited if values["left"] in lowest]
+        for others in (best.values(), suited):
+            chosen += [values for values in others if values not in chosen]
+        return chosen
+
+    def suit(self, values: dict[str, float], again: bool = False) -> dict[str, float]:
+        """Return values with place, release and a sliding load's incline that suit best, and what is "left" [m].
+
+        The release is looked for in the whole track, so closely that swings are in step for one. `again`: it is among
+        the values, and is compared with those that are up to some swings away, for which the can is ahead or behind.
+        """
+        if again:
+            released = values["released"] + 17 * self.pace * np.linspace(-1, 1, 201)  # the middle one is the same
+        else:
+            count = min(max(91, math.ceil(2.6 * self.span / self.pace)), 2000)
+            released = self.track.time[0] + self.span * np.linspace(-1, 0.8, count)
+        some = slice(None, None, max(1, len(self.track.time) // (2000 if again else 100)))
+        time, along = self.track.time[some], self.track.along[some]
         ways, _ = self.motion(values, time - released[:, np.newaxis])
         within = (0.5, 2.0) if "incline" in self.logarithmic else (1.0, 1.0)  # ways are nearly proportional to it
         beside = ways - ways.mean(axis=1, keepdims=True)
@@ -281,25 +324,45 @@ class _Problem:
         suited = {"released": released[at], "place": np.mean(off[at]), "left": np.std(off[at])}
         return values | suited | {"incline": values.get("incline", 0.0) * stretch[at]}
 
-    def solve(self, start: dict[str, float]) -> optimize.OptimizeResult:
-        """Return the minimum that is found from a start; ValueError: there is no such motion."""
-        z = np.clip(self.solved(start), *self.within)
-        radius, kept = self.scene.can.radius, np.ones(self.data.shape, bool)
+    def begin(self, start: dict[str, float]) -> optimize.OptimizeResult:
+        """Return what the first round finds from a start; ValueError: there is no such motion."""
+        radius = self.scene.can.radius
         noise = np.array([[start["left"] / (1 if name == "along" else radius)] for name in self.channels])
-        for _ in range(3):  # the noise and the points that are kept settle on the way
-            found = optimize.least_squares(self.residuals, z, bounds=self.within, args=(noise, kept), **_SOLVER)
-            found.noise, found.kept, z = noise, kept, found.x
-            off = self.model(self.values(z)) - self.data
-            kept = np.abs(off) <= 6 * 1.4826 * np.median(np.abs(off), axis=1, keepdims=True)  # six deviations of noise
-            spare = np.maximum(1.0, kept.sum(axis=1) - len(z) / len(off))
-            noise = np.sqrt(1e-12 + ((kept * off) ** 2).sum(axis=1) / spare)[:, np.newaxis]  # 1e-6 at least
-        found.squares = 2 * self.data.shape[1] * np.log(noise).sum() + (found.fun[self.data.size :] ** 2).sum()
+        return self._least(start, noise, np.ones(self.data.shape, bool), "2-point")
+
+    def round(self, found: optimize.OptimizeResult) -> optimize.OptimizeResult:
+        """Return what another round finds, with the noise, the points and the swing at release that suit by now."""
+        start = self.suit(self.values(found.x), again=True)
+        # Beside a separatrix an incline's effect changes within the step of the derivatives.
+        return self._least(start, found.next_noise, found.next_kept, "3-point")
+
+    def _least(self, start: dict[str, float], noise: np.ndarray, kept: np.ndarray, jac: Any) -> optimize.OptimizeResult:
+        """Return the least squares from a start, with the noise and the points to keep of the next round."""
+        z = np.clip(self.solved(start), *self.within)
+        found = optimize.least_squares(self.residuals, z, jac, self.within, args=(noise, kept), **_SOLVER)
+        found.noise, found.kept = noise, kept
+        off = self.model(self.values(found.x)) - self.data
+        kept = np.abs(off) <= _FAR * 1.4826 * np.median(np.abs(off), axis=1, keepdims=True)  # deviations of noise
+        spare = np.maximum(1.0, kept.sum(axis=1) - len(z) / len(off))
+        noise = np.sqrt(1e-12 + ((kept * off) ** 2).sum(axis=1) / spare)[:, np.newaxis]  # 1e-6 at least
+        found.next_noise, found.next_kept = noise, kept
+        known = (found.fun[self.data.size :] ** 2).sum()
+        # A point that is left out counts as one that is not quite: else a swing that is left out would be an advantage.
+        found.squares = 2 * self.data.shape[1] * np.log(noise).sum() + _FAR**2 * (~kept).sum() + known
         return found
+
+    def different(self, minima: list[optimize.OptimizeResult]) -> list[optimize.OptimizeResult]:
+        """Return the minima that are not one and the same, the least squares first."""
+        own, chosen = slice(len(self.own)), []
+        for found in sorted(minima, key=attrgetter("squares")):
+            if not any(np.abs(found.x - other.x)[own].max(initial=0.0) < 1e-2 for other in chosen):
+                chosen.append(found)
+        return chosen
 
     def result(self, minima: list[optimize.OptimizeResult]) -> Fit:
         """Return the fit of the best minimum, with what there is to be warned of."""
-        least, own = min(each.squares for each in minima), slice(len(self.own))
-        alike = [each for each in minima if each.squares < least + 9.0]  # three standard errors
+        own, minima = slice(len(self.own)), self.different(minima)
+        alike = [each for each in minima if each.squares < minima[0].squares + 9.0]  # three standard errors
         # Of minima that the track does not tell apart, the one that is nearest to the given scene.
         found = min(alike, key=lambda each: np.abs(each.x - _MIDDLE)[own].sum())
         values = self.values(found.x)
@@ -324,6 +387,8 @@ class _Problem:
                 least = min(0.3, wide * np.abs(way).max())
                 parts = [name for name, part in zip(self.guess, way, strict=True) if abs(part) * wide >= least]
                 told.append(f"this track does not tell {' from '.join(parts)}")
+        if found.status == 0:
+            told.append("the search was stopped before it came to the nearest motion")
         for other in alike:
             if self.own and (np.abs(other.x - found.x) / deviations)[own].max() > 6:
                 there = ", ".join(f"{name} = {value:.4g}" for name, value in [*self.values(other.x).items()][own])

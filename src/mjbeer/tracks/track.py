@@ -1,5 +1,6 @@
 """The track of a filmed can, and the tables of Tracker, Logger Pro, Capstone and phyphox in which people have it."""
 
+import csv
 import math
 import os
 import pathlib
@@ -16,15 +17,19 @@ _LENGTHS, _ANGLES = {"m": 1.0, "cm": 1e-2, "mm": 1e-3}, {"rad": 1.0, "deg": math
 _COLUMNS = {
     "time": ({"s": 1.0, "ms": 1e-3, "min": 60.0}, "t|time"),
     "frame": ({}, "frames?|steps?"),
-    "x": (_LENGTHS, "x|along|distance|position|position x|x position"),
+    "x": (_LENGTHS, "x|along|distance|position|position x|x position|u|s"),
     "y": (_LENGTHS, "y|position y|y position"),
     "roll": (_ANGLES, "roll"),
     "phi": (_ANGLES, "phi|φ"),
 }
-"""What is read: the units that it may have, and its usual headings."""
+"""What is read: the units that it may have, and its usual headings. `docs/live.html` has the same."""
 _TITLE = re.compile(r"(?:latest *:)?(?:run *#?\d+ *[:|])? *([^\[(]*[^\[( ])? *(?:[\[(] *(.*?) *[\])])?")
 """How a heading begins: after which run it was, the name and the unit."""
-_NUMBER = re.compile(r"[-+]?(\d+[.,]?\d*|[.,]\d+)(e[-+]?\d+)?", re.IGNORECASE)  # a comma within a cell is a decimal one
+_POINT = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?", re.IGNORECASE)  # 1234.5
+_COMMA = re.compile(r"[-+]?(\d+,\d*|,\d+)(e[-+]?\d+)?", re.IGNORECASE)  # 1234,5
+_GROUPED = re.compile(
+    r"[-+]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?"
+)  # 1,234.5; of 1,234 nobody knows whether it is 1.234 or 1234
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +64,8 @@ def read_track(
 ) -> Track:
     """Return the track in a table: a text with tabs, semicolons, commas or spaces between its columns.
 
-    Numbers may have decimal commas. Lines above the last heading are passed over, rows with an empty cell are left out.
+    Numbers may have decimal commas, or commas between thousands, if others tell which they are. Lines above the last
+    heading are passed over, rows with an empty cell are left out.
     Units stand in the headings, in brackets; without them they are s, m and rad. `columns` says which column is "time",
     "frame", "x", "y", "roll" or "phi", by heading or number from 1, unless its heading is a usual one. `rate` [1/s] is
     that of numbered frames. With x and y the places are along the line through all of them, counted as the can went.
@@ -69,24 +75,33 @@ def read_track(
     """
     source, columns = require.path(path), require.instance("columns", {} if columns is None else columns, dict)
     cells = _cells(source)
-    first = next((line for line, row in cells.items() if sum(map(bool, map(_NUMBER.fullmatch, row))) > 1), 0)
+    first = next((line for line, row in cells.items() if sum(map(_is_number, row)) > 1), 0)
     if not (above := [line for line in cells if line < first]):
         raise ParameterError(f"{source} is no table: there must be a heading above two columns of numbers or more")
-    used = _used(f"{source}, line {above[-1]}", cells[above[-1]], columns)
+    titles = cells[above[-1]]
+    used = _used(f"{source}, line {above[-1]}", titles, columns)
     if "frame" in used:
         used["time"] = used.pop("frame")[0], 1 / require.positive("rate of the frames", rate, "1/s")
-    data: dict[str, list[float]] = {name: [] for name in used}
+    texts: dict[str, list[str]] = {name: [] for name in used}
+    places: dict[str, list[str]] = {name: [] for name in used}
     for line, row in cells.items():
-        if line >= first and all(at < len(row) and row[at] for at, _ in used.values()):
-            for name, (at, scale) in used.items():
-                place = f"{source}, line {line}, column {at + 1}"
-                if not _NUMBER.fullmatch(row[at]):
-                    raise ParameterError(f"{place}: {row[at]!r} is no number")
-                value = scale * float(row[at].replace(",", "."))
-                if name == "time" and data[name] and not value > data[name][-1]:
-                    raise ParameterError(f"{place}: this time is not later than the one before")
-                data[name].append(value)
-    arrays = {name: np.array(values) for name, values in data.items()}
+        if line < first:
+            continue
+        if any(row[len(titles) :]):
+            place = f"{source}, line {line}, column {len(titles) + 1}"
+            raise ParameterError(f"{place}: {row[len(titles)]!r} has no heading; are there commas within numbers?")
+        if all(at < len(row) and row[at] for at, _ in used.values()):
+            for name, (at, _) in used.items():
+                texts[name].append(row[at])
+                places[name].append(f"{source}, line {line}, column {at + 1}")
+    comma = _comma([text for column in texts.values() for text in column])
+    arrays = {}
+    for name, (_, scale) in used.items():
+        values = [_number(*cell, comma) for cell in zip(places[name], texts[name], strict=True)]
+        arrays[name] = scale * np.array(values)
+    for place, step in zip(places["time"][1:], np.diff(arrays["time"]), strict=True):
+        if not step > 0:
+            raise ParameterError(f"{place}: this time is not later than the one before")
     along = _straight(source, arrays["x"], arrays["y"]) if "y" in arrays else arrays["x"]
     return Track(arrays["time"], along, arrays.get("roll"), arrays.get("phi"))
 
@@ -100,7 +115,38 @@ def _cells(source: pathlib.Path) -> dict[int, list[str]]:
     text = raw.decode("utf-16" if raw[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig", errors="replace")
     lines = {number: line for number, line in enumerate(text.splitlines(), start=1) if line.strip(" \t;,")}
     mark = next((each for each in "\t;," if 2 * sum(each in line for line in lines.values()) > len(lines)), None)
-    return {number: [cell.strip(' "') for cell in line.split(mark)] for number, line in lines.items()}
+    if mark is None:
+        lines = {number: " ".join(line.split()) for number, line in lines.items()}
+    # Each line alone: a quotation mark that somebody forgot to close spoils no more than its own.
+    rows = {
+        number: next(csv.reader([line], delimiter=mark or " ", skipinitialspace=True)) for number, line in lines.items()
+    }
+    return {number: [cell.strip(' "') for cell in row] for number, row in rows.items()}
+
+
+def _is_number(text: str) -> bool:
+    """Return whether a cell may be a number, of whatever commas."""
+    return any(form.fullmatch(text) for form in (_POINT, _COMMA, _GROUPED))
+
+
+def _comma(texts: list[str]) -> str | None:
+    """Return what a comma is in these numbers: "decimal" or "thousands"; None if no number tells."""
+    if any(_COMMA.fullmatch(text) and not _GROUPED.fullmatch(text) for text in texts):
+        return "decimal"
+    return "thousands" if any("." in text or text.count(",") > 1 for text in texts) else None
+
+
+def _number(place: str, text: str, comma: str | None) -> float:
+    """Return the number in a cell at a place of the file; `comma` is what a comma is there."""
+    if comma is None and _GROUPED.fullmatch(text):
+        either = f"{text!r} may be {text.replace(',', '.')} or {text.replace(',', '')}"
+        raise ParameterError(f"{place}: {either}, and no number of this table tells which; write it with a point")
+    if comma == "decimal" and _is_number(text) and "." not in text and text.count(",") < 2:
+        return float(text.replace(",", "."))
+    if comma != "decimal" and (_POINT.fullmatch(text) or _GROUPED.fullmatch(text)):
+        return float(text.replace(",", ""))
+    among = ", as others here have decimal commas" if comma == "decimal" and _is_number(text) else ""
+    raise ParameterError(f"{place}: {text!r} is no number{among}")
 
 
 def _used(place: str, titles: list[str], columns: Mapping[str, str | int]) -> dict[str, tuple[int, float]]:

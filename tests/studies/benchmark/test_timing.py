@@ -107,7 +107,7 @@ def test_the_command_writes_everything(
     monkeypatch.setattr(other_tools, "absent", lambda: {"heyoka": reason})
     assert main(["benchmark", "frozen", "--output", str(tmp_path / "new")]) == 0
     names = {each.name for each in (tmp_path / "new").iterdir()}
-    assert names == {"study.json", "summary.md", ".lock", "work_precision.svg"}
+    assert names == {"study.json", "summary.md", ".lock", ".mjbeer", "work_precision.svg"}
     summary = (tmp_path / "new" / "summary.md").read_text()
     for text in ("cheapest setting for an error", "SciPy odeint", "Whole calls", f"\nheyoka is absent: {reason}\n"):
         assert text in summary

@@ -10,7 +10,7 @@ import pytest
 
 from mjbeer import Can, frozen, hoop, liquid, pendulum, simulate, sliding
 from mjbeer.exceptions import TemplateError
-from mjbeer.simulation.simulate import Run
+from mjbeer.simulation.run import Run
 from mjbeer.studies.stability import judge as judging
 from mjbeer.studies.stability.judge import BOTH, DOUBTED, REFUSED, RIGHT, SERIES, SILENT, THEORY, Trial, judge, truth
 

@@ -55,7 +55,7 @@ def test_a_wrong_theory_does_not_agree(
 
 @pytest.mark.parametrize("quick", [True, False])
 def test_checks_have_names_of_their_own(quick: bool) -> None:
-    names = [(check.group, check.name) for check in stability_study.plan(quick)]
+    names = [(check.group, check.name) for check in stability_study.plan(quick, 0)]
     assert len(set(names)) == len(names)
     assert {group for group, _ in names} == {"maps", "cases", "search"}
 
@@ -65,16 +65,17 @@ def test_the_study_is_written(
 ) -> None:
     """One check of each group, for real and in this process; the map is small, and the runs are few."""
     first: dict[str, Check] = {}
-    for check in stability_study.plan(True):
+    for check in stability_study.plan(True, 0):
         first.setdefault(check.group, check)
     small = {"maps": partial(measure, *PLANS[0], 4), "search": partial(stability_study.batch, 0, 4)}
     first |= {group: replace(first[group], measure=few) for group, few in small.items()}
-    monkeypatch.setattr(stability_study, "plan", lambda quick: list(first.values()))
+    monkeypatch.setattr(stability_study, "plan", lambda quick, number: list(first.values()))
     monkeypatch.setattr(os, "cpu_count", lambda: 1)
     assert main(["stability", "--quick", "--json", "--output", str(tmp_path)]) == 0
     told = json.loads(capsys.readouterr().out)
     assert told["failed"] == []
     assert sum(told["totals"]["kinds"]["all"].get(verdict, 0) for verdict in ("right", "refused", "doubted")) == 4
+    assert not (tmp_path / stability_study.UNFINISHED).exists()
     found = Study.load(tmp_path / "stability.jsonl", "mjbeer stability")
     assert {result.group for result in found.results} == {"maps", "cases", "search"}
     assert "All came out as they must." in (tmp_path / "summary.md").read_text()
@@ -89,6 +90,8 @@ def test_the_stored_maps_are_all_that_the_study_makes_and_agree_with_theory() ->
     kept = stability_maps.load()
     assert [each["name"] for each in kept["maps"]] == [", ".join(plan) for plan in PLANS]
     assert all(each["worst"] <= BOUND and each["same"] == 1 for each in kept["maps"])
+    assert set(kept["settings"]) == {"quick", stability_study.FIRST}
+    assert kept["settings"]["quick"] is False
     assert datetime.date.fromisoformat(kept["date"]) >= datetime.date(2026, 11, 21)
     for each in kept["maps"]:
         assert [len(row) for row in each["measured"]] == [len(each["timesteps"])] * len(each["values"])

@@ -1,11 +1,12 @@
 """Known cases end as they must, and runs anywhere in the space of scenes and settings are never wrong and silent.
 
-`make test` makes the same random runs every time, `make search` as many new ones as one wants; the search of
-`mjbeer stability` makes the ones with the first numbers.
+`make test` makes the same random runs every time, `make search` as many new ones as one wants; `mjbeer stability` draws
+the number of its first one when it begins.
 """
 
 import math
 import os
+import pathlib
 import secrets
 
 import pytest
@@ -113,4 +114,29 @@ def test_a_batch_counts_and_keeps_what_is_wrong(monkeypatch: pytest.MonkeyPatch)
         "above its estimate": 4, "above twice": 2,
     }  # fmt: skip
     assert stability_study.bound(all_of) is None
-    assert stability_study.bound({RIGHT: 200, DOUBTED: 100, REFUSED: 50}) == pytest.approx(0.01)
+
+
+def test_the_share_of_silent_runs_is_one_of_trusted_runs_and_claims_too_little_rather_than_too_much() -> None:
+    assert stability_study.bound({RIGHT: 200, DOUBTED: 100, REFUSED: 50}) == pytest.approx(3 / 200)
+    assert stability_study.bound({DOUBTED: 100, REFUSED: 50}) is None
+    assert [stability_study.rounded_up(share) for share in (0.00109, 0.00191, 0.0195)] == ["0.0011", "0.0020", "0.020"]
+
+
+def test_a_study_draws_new_runs_and_an_interrupted_one_goes_on_with_its_own(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    numbers, begun = iter(range(100, 200, 10)), []
+    monkeypatch.setattr(secrets, "randbelow", lambda _: next(numbers))
+    monkeypatch.setattr(stability_study, "plan", lambda quick, first: begun.append((quick, first)) or [])
+    for quick in (True, True, False, False):
+        folder = tmp_path / str(quick)
+        folder.mkdir(exist_ok=True)
+        found = stability_study.conduct(folder, quick, None)
+        assert found.settings == {"quick": quick, "first random run": begun[-1][1]}
+    assert begun == [(True, 100), (True, 100), (False, 120), (False, 120)]
+
+
+def test_random_runs_begin_with_the_first_one_of_the_study() -> None:
+    named = [check.name for check in stability_study.plan(True, 12345) if check.group == RANDOM]
+    assert named[0] == f"random runs 12345 to {12345 + SIZE - 1}"
+    assert len(named) == 4

@@ -10,7 +10,7 @@ import pytest
 
 from mjbeer import Scene, simulate, sliding
 from mjbeer.paper.checks import Check, Result
-from mjbeer.simulation.simulate import Run
+from mjbeer.simulation.run import Run
 from mjbeer.studies.validation import motion_checks as motions
 from mjbeer.studies.validation.validate import Validation, checks
 from mjbeer.theory.can import Damping

@@ -52,12 +52,11 @@ _FLOOR, _CEILING = 1e-15, 10.0
 
 
 def write(study: Benchmark, folder: pathlib.Path) -> None:
-    """Write study.json, the diagram work_precision.svg and, as the last, summary.md.
+    """Write study.json, the diagram work_precision.svg and summary.md.
 
     Raises:
       OutputError: if a file cannot be written.
     """
-    (folder / "summary.md").unlink(missing_ok=True)  # an earlier one would not match the study
     files.write(folder / "study.json", study.json())
     draw(study, folder / "work_precision")
     machine = study.machine

@@ -148,7 +148,7 @@ def _set_up_usual(case: Case, point: Point) -> tuple[Callable[[], Any], Callable
 
 
 def _set_up_setting(case: Case, point: Point) -> tuple[Callable[[], Any], Callable[[Any], Samples]]:
-    """Return the same for a setting of mjbeer: its integrator alone if the timestep is fixed, or the whole tolerance."""
+    """Return the same for a setting of mjbeer: the integrator alone, or all runs of a tolerance."""
     given: dict[str, Any] = {"tolerance": point.value}
     if point.parameter == points.TIMESTEP:
         given = {"integrator": point.method, "timestep": point.value}

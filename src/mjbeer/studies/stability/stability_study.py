@@ -7,9 +7,11 @@ import datetime
 import json
 import math
 import pathlib
+import secrets
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict
+from decimal import ROUND_CEILING, Context
 from functools import partial
 from typing import Any
 
@@ -28,6 +30,8 @@ from mjbeer.studies.study import Study
 from mjbeer.theory.record import ERROR
 
 COMMAND = "mjbeer stability"
+UNFINISHED, FINISHED = "unfinished.jsonl", "stability.jsonl"
+"""Files that have the study while it is measured, and when it is whole."""
 KNOWN, RANDOM = "cases", "search"
 """The groups of a study with known and with random cases."""
 SIZE = 4 * len(REGIONS)
@@ -39,6 +43,10 @@ NEEDLESS, ABOVE, TWICE = "doubted, yet right", "above its estimate", "above twic
 pulled; and trusted runs whose error is above what they admit, or above twice that."""
 _RULE_OF_THREE = 3.0
 """-ln(0.05): where n runs had no fault, a share of faults above 3/n would have shown one with a probability of 95 %."""
+FIRST = "first random run"
+"""The setting of a study that has the number of its first random run."""
+_SEEDS = 10**9
+"""Number of random runs among which a study draws its first one: development has seen next to none of them."""
 _READ = """
 A run is **right** if it is trusted, and phi and u/a stay within 0.01 rad of theory (relative beyond 1 rad), and within
 its tolerance if it has one. It is **refused** if it ends in an error that states the reason, and **doubted** if it
@@ -48,17 +56,20 @@ share no code judge a motion without damping; damped ones, liquids and attached 
 """How to read the tables of the search."""
 
 
-def plan(quick: bool) -> list[Check]:
-    """Return all checks of a study; a `quick` one has coarser maps, and fewer random runs."""
+def plan(quick: bool, first: int) -> list[Check]:
+    """Return all checks of a study with random runs from the number `first` on.
+
+    A `quick` study has coarser maps, and fewer random runs.
+    """
     known = [
         Check(KNOWN, each.name, partial(try_case, each), bound=0, unit="runs", reason="each ends as it must")
         for each in cases()
     ]
     cells, runs = (stability_maps.FEW_CELLS, FEW_RUNS) if quick else (stability_maps.CELLS, RUNS)
-    return [*stability_maps.checks(cells), *known, *random_checks(runs)]
+    return [*stability_maps.checks(cells), *known, *random_checks(runs, first)]
 
 
-def random_checks(runs: int, number: int = 0) -> list[Check]:
+def random_checks(runs: int, number: int) -> list[Check]:
     """Return the checks of at least so many random runs, from a `number` on."""
     named = {first: f"random runs {first} to {first + SIZE - 1}" for first in range(number, number + runs, SIZE)}
     reason = "none is wrong and silent"
@@ -117,19 +128,29 @@ def totals(results: Iterable[Result]) -> dict[str, Any]:
 
 
 def bound(counts: dict[str, int]) -> float | None:
-    """Return the largest share of silent runs that a count of 0 allows, at 95 %: 3/n; None if some were silent."""
-    judged = sum(counts.get(verdict, 0) for verdict in (RIGHT, DOUBTED))
-    return None if counts.get(SILENT) or not judged else _RULE_OF_THREE / judged
+    """Return an upper bound, at 95 % confidence, of the share of trusted runs that are silent: 3/n of n trusted runs.
+
+    None if some run was silent, or none was trusted.
+    """
+    trusted = counts.get(RIGHT, 0)
+    if counts.get(SILENT) or not trusted:
+        return None
+    return _RULE_OF_THREE / trusted
+
+
+def rounded_up(share: float) -> str:
+    """Return an upper bound of a share with two digits, rounded up: rounded down, it would claim too much."""
+    return f"{Context(prec=2, rounding=ROUND_CEILING).create_decimal(share):f}"
 
 
 def search_tables(found: dict[str, Any], results: Sequence[Result] = ()) -> list[Table]:
     """Return the tables of a search from its totals: known cases, random ones, and the silent runs of `results`."""
-    columns, last = (*VERDICTS, *JUDGES, NEEDLESS, ABOVE, TWICE), "share of silent runs below, at 95 %"
+    columns, last = (*VERDICTS, *JUDGES, NEEDLESS, ABOVE, TWICE), "silent share of trusted runs at most, at 95 %"
     kinds = []
     for name, counts in found["kinds"].items():
         runs, share = sum(counts.get(verdict, 0) for verdict in VERDICTS), bound(counts)
         cells = (str(counts.get(column, 0)) for column in columns)
-        kinds.append((name, str(runs), *cells, "-" if share is None else f"{share:.1g}"))
+        kinds.append((name, str(runs), *cells, "-" if share is None else rounded_up(share)))
     silent = [run for of in results for run in of.values.get("silent", ())]
     wrong = [(str(run["number"]), run["region"], f"{run['error']:.1e}", run["trial"]) for run in silent]
     known = ("all", str(sum(found["known"].values())), *(str(found["known"].get(verdict, 0)) for verdict in VERDICTS))
@@ -156,17 +177,25 @@ def _table_of_cases(results: Sequence[Result]) -> Table:
 
 
 def conduct(folder: pathlib.Path, quick: bool, console: Console) -> Study:
-    """Measure what the study in `folder` lacks, on all cores, and return the study, kept as stability.jsonl.
+    """Measure what the study in `folder` lacks, on all cores, and return the study, kept as unfinished.jsonl.
 
-    The summary of an earlier study is removed first.
+    Its random runs are fresh: the number of the first one is drawn when the study begins, and kept in its settings.
 
     Raises:
       OutputError: if the folder cannot be written to.
       OSError: if the system ends one of the processes.
-      ParameterError: if stability.jsonl is there but is not such a study.
+      ParameterError: if unfinished.jsonl or stability.jsonl is there but is not such a study.
     """
-    (folder / "summary.md").unlink(missing_ok=True)
-    return studies.run(plan(quick), console, folder / "stability.jsonl", COMMAND, {"quick": quick})
+    settings = {"quick": quick, FIRST: secrets.randbelow(_SEEDS)}
+    for name in (UNFINISHED, FINISHED):
+        path = folder / name
+        if path.exists():
+            begun = Study.load(path, COMMAND).settings
+            if begun.get("quick") == quick:
+                settings |= begun
+            break
+    checks = plan(quick, settings[FIRST])
+    return studies.run(checks, console, folder / UNFINISHED, COMMAND, settings, finished=folder / FINISHED)
 
 
 def tables(study: Study) -> list[Table]:
@@ -183,11 +212,12 @@ def to_json(study: Study) -> str:
 
 
 def write(study: Study, folder: pathlib.Path) -> None:
-    """Write maps.json, totals.json, the plots of the maps, and at the end summary.md into a folder.
+    """Write stability.jsonl, maps.json, totals.json, the plots of the maps, and summary.md into a folder.
 
     Raises:
       OutputError: if a file cannot be written.
     """
+    study.save(folder / FINISHED)
     maps = ({"name": of.name, "worst": of.error, **of.values} for of in study.of(stability_maps.MAPS))
     dated = study.about | {"date": datetime.date.today().isoformat()}
     files.write(folder / "maps.json", studies.document(dated, stability_maps.MAPS, maps))

@@ -41,7 +41,9 @@ def checks() -> Iterator[Check]:
 def filmed(scene: Scene, phi0: float | None, rng: np.random.Generator | None = None) -> Track:
     """Return the track of a can that lies still for 0.3 s and is then let go; `rng` makes noise, and a lens's bend."""
     time = np.arange(60) / _RATE
-    distance = exact(scene, np.maximum(time - 0.3, 0.0), -scene.incline if phi0 is None else phi0).distance
+    rolls = time > 0.3
+    distance = np.zeros(len(time))
+    distance[rolls] = exact(scene, time[rolls] - 0.3, -scene.incline if phi0 is None else phi0).distance
     if rng is not None:
         share = (distance - distance.min()) / np.ptp(distance)
         bend = min(BEND, np.ptp(distance) / 400) * rng.standard_normal()
