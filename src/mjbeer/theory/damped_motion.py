@@ -21,9 +21,10 @@ from numpy.polynomial import legendre
 
 from mjbeer.exceptions import ToleranceError
 from mjbeer.theory.equations import accelerations
-from mjbeer.theory.motion import EPS, ROUNDINGS, UNCERTAIN, Start
+from mjbeer.theory.motion import ROUNDINGS, UNCERTAIN, Launch
 from mjbeer.theory.oscillator import reduced, root
 from mjbeer.theory.scene import Scene
+from mjbeer.theory.travel_time import EPS
 
 _STAGES = 24  # s: of order 47, a swing takes some five steps a period to rounding
 _WORK = 6_000  # most corrections of Newton's method in all: a can of beer that swings by 1 rad takes them in 40 s
@@ -64,7 +65,7 @@ def _rates_of(scene: Scene) -> Rates:
 def solve(scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float) -> tuple[np.ndarray, ...]:
     """Return phi [rad], phi_dot [rad/s], u [m] and u_dot [m/s] at times [s], with the errors of `exact`."""
     radius, (u0, u_dot0) = scene.can.radius, scene.start(phi0, phi_dot0)
-    if scene.incline == 0 and Start.at(scene.oscillator, phi0, phi_dot0).stays(phi0):
+    if scene.incline == 0 and Launch.of(scene.oscillator, phi0, phi_dot0).stays:
         still = np.zeros_like(time)
         return phi0 + still, still, u0 + still, still
     order = np.argsort(time)
