@@ -1,7 +1,7 @@
 """The motion of a sliding load with damping or drag, to rounding.
 
-**The problem.** Damping and drag take energy, so that no integral of energy makes the time a
-quadrature, as it does in `motion`. The equations are integrated step by step instead.
+**The problem.** Damping and drag take energy, so that the time is no longer an integral over phi,
+as it is in `motion`. The equations are integrated step by step instead.
 
 **The equations** are (46) and (47) with the torque T(w) of the damping and the drag
 d u_dot |u_dot|. The variables are phi, phi_dot and the slip rate w = roll_dot - phi_dot, with
@@ -9,20 +9,19 @@ roll = u/a. Where the damping is strong, w is small, and as a difference it woul
 With M_e = m + m_can + I_can/a^2, (46) is divided by M_e a and (47) by M_e a^2. With u_ddot
 eliminated from (47) they are
 
-    roll_ddot = drive - beta (sin(phi) phi_dot^2 - cos(phi) phi_ddot) - B,
+    roll_ddot = drive - beta (sin(phi) phi_dot^2 - cos(phi) phi_ddot) - braking,
     j(phi) phi_ddot = -delta sin(phi - bottom) - beta^2 sin(phi) cos(phi) phi_dot^2
-                      + tau(w) - beta cos(phi) B,
-    B = tau(w) + kappa roll_dot |roll_dot|.
+                      + tau(w) - beta cos(phi) braking,
+    braking = tau(w) + kappa roll_dot |roll_dot|,
 
-Here B brakes the can, drive = m_t g sin(alpha)/(M_e a), beta = m b/(M_e a), tau = T/(M_e a^2) and
-kappa = d a/M_e. j = J/(M_e a^2) and delta = depth/(M_e a^2) have J, `depth` and `bottom` of
-`Oscillator`.
+with drive = m_t g sin(alpha)/(M_e a), beta = m b/(M_e a), tau = T/(M_e a^2), kappa = d a/M_e,
+j = J/(M_e a^2) and delta = depth/(M_e a^2). J, `depth` and `bottom` are those of `Oscillator`.
 
 **The method.** In each step, phi_dot and w are polynomials in x = -1 to 1 that obey the equations
-at the Radau points. This is Radau IIA with s stages, of order 2 s - 1. It is L-stable: what has
-decayed, however fast it did, takes no small steps. (E. Hairer and G. Wanner, Solving Ordinary
-Differential Equations II, IV.5.) As Legendre series the polynomials show whether they have reached
-rounding, and give the motion between the ends of the step.
+at the Radau points. This method, Radau IIA with 24 stages, has the order 47. It is L-stable: a
+fast decay takes small steps only as long as it lasts. (E. Hairer and G. Wanner, Solving Ordinary
+Differential Equations II, IV.5.) The coefficients of the polynomials in Legendre's tell whether the
+step is resolved to rounding. The same series give the motion between the ends of the step.
 
 **Corners.** The slopes of w |w|, which a damping may contain, and of roll_dot |roll_dot| have
 corners where w or roll_dot is zero. No polynomial follows them. A step that would pass a corner
@@ -34,7 +33,6 @@ These are carried along, and a motion that rounding may change noticeably is ref
 
 import itertools
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -48,12 +46,8 @@ from mjbeer.theory.oscillator import reduced, root
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.travel_time import EPS
 
-_STAGES = 24  # s: a swing takes some five steps a period to rounding
+_STAGES = 24  # s in formulas; a swing then takes some five steps a period
 _MOST_CORRECTIONS = 6_000  # of Newton's method in all: enough for beer that swings 1 rad for 40 s
-
-_SLIP_RATE = (0.0, 1.0)
-_ROLL_DOT = (1.0, 1.0)
-"""The rates that may have corners, as factors of phi_dot and w whose products are added."""
 
 
 def solve(
@@ -69,19 +63,9 @@ def solve(
     if scene.incline == 0 and Launch.of(scene.oscillator, phi0, phi_dot0).stays:
         zeros = np.zeros_like(time)
         return phi0 + zeros, zeros, u0 + zeros, zeros
-    corners = []
-    if scene.damping_law.quadratic > 0:
-        corners.append(_SLIP_RATE)
-    if scene.drag > 0:
-        corners.append(_ROLL_DOT)
     order = np.argsort(time)
-    samples = _integrate(
-        _rates_of(scene),
-        time[order],
-        state=np.array([reduced(phi0), phi_dot0, u_dot0 / radius - phi_dot0]),
-        swing_rate=math.sqrt(scene.oscillator.depth / scene.oscillator.base),
-        corners=np.reshape(corners, (-1, 2)),
-    )
+    initial_state = np.array([reduced(phi0), phi_dot0, u_dot0 / radius - phi_dot0])
+    samples = _integrate(Equations(scene), time[order], initial_state)
     delta_phi, delta_roll, phi_dot, slip_rate = samples[:, np.argsort(order)]
     return phi0 + delta_phi, phi_dot, u0 + radius * delta_roll, radius * (phi_dot + slip_rate)
 
@@ -96,73 +80,88 @@ class Rates(NamedTuple):
     jacobian: np.ndarray  # their derivatives by phi, phi_dot and w, of shape (2, 3, ...)
 
 
-RatesFunction = Callable[[np.ndarray, np.ndarray, np.ndarray], Rates]
-"""A function of phi, phi_dot and w."""
+class Equations:
+    """The equations of a scene."""
 
+    def __init__(self, scene: Scene) -> None:
+        self.swing_rate = math.sqrt(scene.oscillator.depth / scene.oscillator.base)
+        """Frequency of the load's swings [rad/s], about."""
+        corners = []
+        if scene.damping_law.quadratic > 0:
+            corners.append([0.0, 1.0])  # w
+        if scene.drag > 0:
+            corners.append([1.0, 1.0])  # roll_dot
+        self.corners = np.reshape(corners, (-1, 2))
+        """A row for each rate with a corner where it is 0: the factors of phi_dot and w in it."""
+        self._scene = scene
 
-def _rates_of(scene: Scene) -> RatesFunction:
-    """Return the function that evaluates the equations of a scene and their derivatives.
+    def rates(self, phi: np.ndarray, phi_dot: np.ndarray, slip_rate: np.ndarray) -> Rates:
+        """Return phi_ddot and w_dot, and their derivatives.
 
-    With c = beta cos(phi) and s = beta sin(phi), of which the derivatives by phi are -s and c,
+        With c = beta cos(phi) and s = beta sin(phi) the equations are
 
-        j phi_ddot = -delta sin(phi - bottom) - s c phi_dot^2 + tau - c B,
-        roll_ddot = drive - s phi_dot^2 + c phi_ddot - B,
-        w_dot = roll_ddot - phi_ddot.
+            j phi_ddot = -delta sin(phi - bottom) - s c phi_dot^2 + tau - c braking,
+            roll_ddot = drive - s phi_dot^2 + c phi_ddot - braking.
 
-    j = J/(M_e a^2) has the derivative 2 s c, as J = base + coupling sin^2(phi) with coupling = (m
-    b)^2/M_e = beta^2 M_e a^2. Since roll_dot = phi_dot + w, D = 2 kappa |roll_dot| is the
-    derivative of kappa roll_dot |roll_dot| by phi_dot as well as by w. Hence B has the derivatives
-    0 by phi, D by phi_dot and tau' + D by w. The product rule on the first equation gives
+        By phi, c has the derivative -s, s has c, and j has 2 s c: it is constant but for s^2, since
+        J is constant but for (m b sin(phi))^2/M_e. The derivative of tau by w is `tau_by_w`. That
+        of kappa roll_dot |roll_dot| by roll_dot is 2 kappa |roll_dot|, or `drag_by_roll_dot`; as
+        roll_dot = phi_dot + w, it is the derivative by phi_dot, and by w, as well. The derivatives
+        of `braking` by phi, phi_dot and w are therefore 0, drag_by_roll_dot and tau_by_w +
+        drag_by_roll_dot. Those of the first equation are, by phi, phi_dot and w,
 
-        j d(phi_ddot)/d(phi) = -delta cos(phi - bottom) - (c^2 - s^2) phi_dot^2 + s B
-                               - 2 s c phi_ddot,
-        j d(phi_ddot)/d(phi_dot) = -2 s c phi_dot - c D,
-        j d(phi_ddot)/d(w) = tau' - c (tau' + D) = (1 - c) tau' - c D,
+            j phi_ddot_by_phi + 2 s c phi_ddot
+                = -delta cos(phi - bottom) - (c^2 - s^2) phi_dot^2 + s braking,
+            j phi_ddot_by_phi_dot = -2 s c phi_dot - c drag_by_roll_dot,
+            j phi_ddot_by_w = tau_by_w - c (tau_by_w + drag_by_roll_dot).
 
-    and the other two together, as w_dot = drive - s phi_dot^2 - B - (1 - c) phi_ddot,
+        From the second equation, w_dot = roll_ddot - phi_ddot is
 
-        d(w_dot)/d(phi) = -c phi_dot^2 - s phi_ddot - (1 - c) d(phi_ddot)/d(phi),
-        d(w_dot)/d(phi_dot) = -2 s phi_dot - D - (1 - c) d(phi_ddot)/d(phi_dot),
-        d(w_dot)/d(w) = -tau' - D - (1 - c) d(phi_ddot)/d(w).
-    """
-    oscillator = scene.oscillator
-    law = scene.damping_law
-    radius = scene.can.radius
-    unit = scene.effective_mass * radius**2  # M_e a^2
-    beta = scene.load.moment / scene.effective_mass / radius
-    kappa = scene.drag * radius / scene.effective_mass
-    delta = oscillator.depth / unit
+            w_dot = drive - s phi_dot^2 - braking - (1 - c) phi_ddot,
 
-    def rates(phi: np.ndarray, phi_dot: np.ndarray, slip_rate: np.ndarray) -> Rates:
-        roll_dot = phi_dot + slip_rate
-        u_ddot, phi_ddot = accelerations(scene, phi, phi_dot, radius * roll_dot, slip_rate)
+        of which the derivatives are
+
+            w_dot_by_phi = -c phi_dot^2 - s phi_ddot - (1 - c) phi_ddot_by_phi,
+            w_dot_by_phi_dot = -2 s phi_dot - drag_by_roll_dot - (1 - c) phi_ddot_by_phi_dot,
+            w_dot_by_w = -tau_by_w - drag_by_roll_dot - (1 - c) phi_ddot_by_w.
+        """
+        scene = self._scene
+        oscillator = scene.oscillator
+        radius = scene.can.radius
+        unit = scene.effective_mass * radius**2  # M_e a^2
+        beta = scene.load.moment / scene.effective_mass / radius
+        kappa = scene.drag * radius / scene.effective_mass
+        delta = oscillator.depth / unit
+        j = oscillator.inertia(phi) / unit
         c = beta * np.cos(phi)
         s = beta * np.sin(phi)
         square = phi_dot * phi_dot
-        d_tau = law.derivative(slip_rate) / unit
-        d_drag = 2 * kappa * np.abs(roll_dot)
-        braking = law.torque(slip_rate) / unit + d_drag * roll_dot / 2
-        gravity = delta * np.cos(phi - oscillator.bottom)
-        phi_ddot_by = np.array(
-            [
-                -gravity - (c * c - s * s) * square + s * braking - 2 * s * c * phi_ddot,
-                -2 * s * c * phi_dot - c * d_drag,
-                (1 - c) * d_tau - c * d_drag,
-            ]
-        )
-        phi_ddot_by /= oscillator.inertia(phi) / unit
-        w_dot_by = np.array(
-            [
-                -c * square - s * phi_ddot,
-                -2 * s * phi_dot - d_drag,
-                -d_tau - d_drag,
-            ]
-        )
-        w_dot_by -= (1 - c) * phi_ddot_by
-        values = np.array([phi_ddot, u_ddot / radius - phi_ddot])
-        return Rates(values, np.array([phi_ddot_by, w_dot_by]))
+        roll_dot = phi_dot + slip_rate
+        u_ddot, phi_ddot = accelerations(scene, phi, phi_dot, radius * roll_dot, slip_rate)
+        w_dot = u_ddot / radius - phi_ddot
 
-    return rates
+        tau_by_w = scene.damping_law.derivative(slip_rate) / unit
+        drag_by_roll_dot = 2 * kappa * np.abs(roll_dot)
+        braking = scene.damping_law.torque(slip_rate) / unit + drag_by_roll_dot * roll_dot / 2
+
+        weight_by_phi = -delta * np.cos(phi - oscillator.bottom)
+        phi_ddot_by_phi = weight_by_phi - (c * c - s * s) * square + s * braking
+        phi_ddot_by_phi = (phi_ddot_by_phi - 2 * s * c * phi_ddot) / j
+        phi_ddot_by_phi_dot = (-2 * s * c * phi_dot - c * drag_by_roll_dot) / j
+        phi_ddot_by_w = ((1 - c) * tau_by_w - c * drag_by_roll_dot) / j
+
+        w_dot_by_phi = -c * square - s * phi_ddot - (1 - c) * phi_ddot_by_phi
+        w_dot_by_phi_dot = -2 * s * phi_dot - drag_by_roll_dot - (1 - c) * phi_ddot_by_phi_dot
+        w_dot_by_w = -tau_by_w - drag_by_roll_dot - (1 - c) * phi_ddot_by_w
+        return Rates(
+            np.array([phi_ddot, w_dot]),
+            np.array(
+                [
+                    [phi_ddot_by_phi, phi_ddot_by_phi_dot, phi_ddot_by_w],
+                    [w_dot_by_phi, w_dot_by_phi_dot, w_dot_by_w],
+                ]
+            ),
+        )
 
 
 # Polynomials on a step, in x = -1 to 1
@@ -252,27 +251,20 @@ class Progress:
             )
 
 
-def _integrate(
-    rates: RatesFunction,
-    times: np.ndarray,
-    state: np.ndarray,
-    swing_rate: float,
-    corners: np.ndarray,
-) -> np.ndarray:
+def _integrate(equations: Equations, times: np.ndarray, state: np.ndarray) -> np.ndarray:
     """Return how far phi and roll have turned [rad], phi_dot and w [rad/s] at sorted times.
 
-    The result has shape (4, times). The `state` is phi, phi_dot and w at time 0, `swing_rate` the
-    frequency [rad/s] of the load's swings. A row of `corners` is `_SLIP_RATE` or `_ROLL_DOT`.
+    The result has shape (4, times). The `state` is phi, phi_dot and w at time 0.
     """
     latest = float(times[-1])
     samples = np.empty((4, len(times)))
     sampled = int(np.searchsorted(times, 0.0, "right"))
     samples[:, :sampled] = np.array([[0.0, 0.0, *state[1:]]]).T
-    # An angle of 0 stands for that of the incline, which is rounded as one of 1 rad.
+    # The rounding of the scene, of its incline for one, counts as that of an angle of 1 rad.
     errors = ROUNDINGS * np.array([abs(state[0]) + 1, *np.abs(state[1:]), 0.0])
     progress = Progress(state, errors)
     corrections = 0
-    length = _first_length(rates(*state), state, swing_rate, latest)
+    length = _first_length(equations, state, latest)
     while progress.time < latest:
         length = min(length, latest - progress.time)
         if corrections >= _MOST_CORRECTIONS or progress.time + length == progress.time:
@@ -280,7 +272,7 @@ def _integrate(
                 "the motion takes too many steps: it is too fast, or too long, to be followed "
                 f"until {latest:.6g} s; it can be followed until {0.99 * progress.time:.3g} s"
             )
-        trial = _try_step(rates, progress, length, swing_rate, corners)
+        trial = _try_step(equations, progress, length)
         corrections += trial.corrections
         length = trial.next_length
         if trial.step is None:
@@ -295,53 +287,49 @@ def _integrate(
     return samples
 
 
-def _first_length(rates: Rates, state: np.ndarray, swing_rate: float, latest: float) -> float:
-    """Return the length [s] of the first step, short beside every time that the motion has."""
-    values, jacobian = rates
+def _first_length(equations: Equations, state: np.ndarray, latest: float) -> float:
+    """Return the length [s] of the first step, which is short for anything that may happen."""
+    values, jacobian = equations.rates(*state)
     fastest = abs(jacobian[1, 2]) + abs(jacobian[0, 1]) + abs(state[1])
-    fastest += swing_rate + math.sqrt(np.abs(values).sum())
+    fastest += equations.swing_rate + math.sqrt(np.abs(values).sum())
     return 1 / fastest if fastest > 0 else latest
 
 
-def _try_step(
-    rates: RatesFunction,
-    progress: Progress,
-    length: float,
-    swing_rate: float,
-    corners: np.ndarray,
-) -> Trial:
-    """Return the step of a `length` [s], if it can be solved to rounding and passes no corner."""
+def _try_step(equations: Equations, progress: Progress, length: float) -> Trial:
+    """Try a step of a `length` [s]: it must be solved to rounding, and may pass no corner."""
     state = progress.state
-    # Errors of rates are relative to the rates, or to this where they are smaller.
-    scale = max(swing_rate, abs(state[1])) + np.finfo(float).tiny
-    corrections, stages = _solve_stages(rates, state, progress.errors, length, scale)
+    # Errors of a rate are relative to the rate, or to this where the rate is smaller.
+    scale = max(equations.swing_rate, abs(state[1])) + np.finfo(float).tiny
+    corrections, stages = _solve_stages(equations, state, progress.errors, length, scale)
     if stages is None:
         return Trial(corrections, length / 4, None)
     nodes = np.vstack([state[1:], stages.rates.T])
-    share = _share_to_corner(nodes, corners)
+    share = _share_to_corner(nodes, equations.corners)
     if share is not None:
         return Trial(corrections, share * length, None)
     series = _TO_SERIES @ nodes
     largest = np.maximum(scale, np.abs(stages.rates).max(axis=1))
     sizes = (np.abs(series[:-1]) / largest).max(axis=1)
+    # So many coefficients are more than rounding; the last one that is looked at must not be.
     needed = 1 + int(np.max(np.flatnonzero(sizes > 1e-14), initial=0))
     if needed == _STAGES:
         return Trial(corrections, length / 2, None)
     phi_dot, slip_rate = stages.rates
     angles = length * _TO_INTEGRAL @ np.array([phi_dot, phi_dot + slip_rate]).T
-    longer = min(10.0, 0.95 * _STAGES / needed)
-    return Trial(corrections, longer * length, Step(length, stages, series, angles))
+    step = Step(length, stages, series, angles)
+    return Trial(corrections, length * min(10.0, 0.95 * _STAGES / needed), step)
 
 
 def _share_to_corner(nodes: np.ndarray, corners: np.ndarray) -> float | None:
     """Return the share of a step at which the first corner is passed, or None if none is.
 
-    `nodes` are phi_dot and w at the start and the stages, of shape (1 + stages, 2).
+    `nodes` are phi_dot and w at the start and the stages, of shape (1 + stages, 2); `corners` are
+    those of `Equations`.
     """
     shares = []
     rates = nodes @ corners.T
-    # A rate smaller than this has no sign. In trials the polynomial was off by up to 72 eps, by
-    # another amount on each processor, as each sums in another order.
+    # A rate smaller than this has no sign. In trials the rounding of the polynomial was up to
+    # 72 eps, and differed between processors, which add in different orders.
     noise = 256 * EPS * np.abs(nodes).sum(axis=1).max()
     signs = np.where(np.abs(rates) > noise, np.sign(rates), 0.0)
     for sign, series in zip(signs.T, (_TO_SERIES @ rates).T, strict=True):
@@ -350,12 +338,13 @@ def _share_to_corner(nodes: np.ndarray, corners: np.ndarray) -> float | None:
                 rising = sign[high] * series
                 x = root(lambda x, c=rising: legendre.legval(x, c), _NODES[low], _NODES[high])
                 shares.append((1 + x) / 2)
-    # A corner that near an end may stay: the torque beside it is the square of that, or less.
+    # A corner nearer than this to an end may stay inside: the torque beside it is the square of
+    # that share, or less.
     return min((share for share in shares if 1e-6 < share < 1 - 1e-6), default=None)
 
 
 def _solve_stages(
-    rates: RatesFunction,
+    equations: Equations,
     state: np.ndarray,
     errors: np.ndarray,
     length: float,
@@ -374,43 +363,43 @@ def _solve_stages(
         by phi_dot_k:  h a_ik df_k/d(phi_dot) + h sum_j a_ij df_j/d(phi) h a_jk,
         by w_k:        h a_ik df_k/d(w).
 
-    Let G be the matrix of these derivatives. The change of y by a correction solves
+    Let G be the matrix of these derivatives. A correction of Newton's method changes the y_i by the
+    solution of
 
         (1 - G) change = right side - y.
 
-    If phi_0 and y_0 have `errors`, the errors of the y_i solve
+    If phi_0 and y_0 have `errors`, those of the y_i solve equations with the same matrix,
 
-        (1 - G) error = error of y_0 + h sum_j a_ij df_j/d(phi) (error of phi_0),
+        (1 - G) error = error of y_0 + h sum_j a_ij df_j/d(phi) (error of phi_0).
 
-    so that both are solved together. All errors of rates are relative to `scale` [rad/s] at least.
+    A change of a rate is relative to its largest size, or to `scale` [rad/s] if that is larger.
     """
     reach = length * _MATRIX  # h a_ij
     begin = state[1:, np.newaxis]
     stages = np.repeat(begin, _STAGES, axis=1)
-    derivatives = np.empty((2, _STAGES, 2, _STAGES))  # G: of phi_dot_i or w_i by phi_dot_k or w_k
+    unknowns = 2 * _STAGES  # phi_dot at all stages, and then w
+    identity = np.eye(unknowns)
+    derivatives = np.empty((unknowns, unknowns))  # G
     sides = np.empty((2, _STAGES, 2))  # the right sides for the changes and for the errors
-    unknowns = 2 * _STAGES
     last_size = math.inf
     for corrections in range(1, 13):
-        values, jacobian = rates(state[0] + reach @ stages[0], *stages)
-        by_phi = jacobian[:, [0]]
-        by_phi_dot = jacobian[:, [1]]
-        by_w = jacobian[:, [2]]
-        derivatives[:, :, 0] = reach * by_phi_dot + (reach * by_phi) @ reach
-        derivatives[:, :, 1] = reach * by_w
+        values, jacobian = equations.rates(state[0] + reach @ stages[0], *stages)
+        for variable, rows in enumerate((slice(0, _STAGES), slice(_STAGES, unknowns))):
+            by_phi, by_phi_dot, by_w = jacobian[variable]
+            derivatives[rows, :_STAGES] = reach * by_phi_dot + (reach * by_phi) @ reach
+            derivatives[rows, _STAGES:] = reach * by_w
         sides[..., 0] = begin + values @ reach.T - stages
         sides[..., 1] = errors[0] * jacobian[:, 0] @ reach.T + errors[1:3, np.newaxis]
-        matrix = np.eye(unknowns) - derivatives.reshape(unknowns, unknowns)
         try:
-            solved = np.linalg.solve(matrix, sides.reshape(unknowns, 2)).reshape(sides.shape)
+            solved = np.linalg.solve(identity - derivatives, sides.reshape(unknowns, 2))
         except np.linalg.LinAlgError:
             return corrections, None
-        change = solved[..., 0]
+        change, changed_errors = np.moveaxis(solved.reshape(sides.shape), -1, 0)
         stages = stages + change
         largest = np.maximum(scale, np.abs(stages).max(axis=1))
         size = float((np.abs(change).max(axis=1) / largest).max())
-        if last_size < 1e-9:  # each correction squares the error, and the last one left rounding
-            return corrections, Stages(stages, solved[..., 1])
+        if last_size < 1e-9:  # each correction squares the error, and this one left rounding
+            return corrections, Stages(stages, changed_errors)
         if not size < 1e6:
             return corrections, None
         last_size = size

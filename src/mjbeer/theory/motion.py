@@ -10,9 +10,9 @@ keeps the digits of E - V.
 
 **Two kinds of path** are enough.
 
-- An `Arc` leads to a turning point and back. There E - V = 0, and the integrand is infinite. With
-  phi = turn + s^2, or turn - s^2, dphi is 2 s ds, and E - V = V(turn) - V(phi) is s^2 |torque|,
-  where `torque` is the mean of -V' between `turn` and phi. The factor s cancels:
+- An `Arc` leads to a turning point phi_t and back. There E - V = 0, and the integrand is infinite.
+  With phi = phi_t + s^2, or phi_t - s^2, |dphi| is 2 s ds, and E - V = V(phi_t) - V(phi) is
+  s^2 |torque|, where `torque` is the mean of -V' between phi_t and phi. The factor s cancels:
 
       dt/ds = 2 s sqrt(J / (2 s^2 |torque|)) = sqrt(2 J / |torque|).
 
@@ -24,7 +24,7 @@ keeps the digits of E - V.
 **Three kinds of motion** are made of them. A swing is two arcs that meet at the equilibrium, again
 and again. A rotation on level ground is one turn, again and again. On a slope a load climbs in
 turns until its energy no longer suffices, turns round in an arc, and rolls down in turns for ever;
-a load that starts downhill does only the last part of this.
+a load that starts downhill does only the last part of this. (`docs/physics.md` has a figure.)
 
 **One reflection.** All of this is written for a ramp that makes phi grow, and on level ground for a
 rotation with phi_dot > 0. Other motions are reflected when they start, in `Launch.of`, and
@@ -212,7 +212,7 @@ class Leg(NamedTuple):
     """A part of a motion."""
 
     path: "Arc | Turns"
-    turn: int  # the turn of the path, or its most uphill one; that of the start is 0
+    turn: int  # the number of its turn, or of its most uphill one; that of the start is 0
     margin: float  # the least energy by which the motion passes, or misses, a crest there [J]
 
 
@@ -261,6 +261,7 @@ def _follow_slope(launch: Launch, time: np.ndarray) -> Course:
 
 def _follow_legs(launch: Launch, legs: Iterable[Leg], since: np.ndarray) -> Course:
     """Return the course at times [s] since the first of the `legs` began, as far as they lead."""
+    # The angles of legs are past the rest in a swing, and else past the crest of each turn.
     begin_angle = launch.past_rest if launch.swings else launch.past_crest
     latest = float(np.max(since, initial=0.0))
     delta_phi = np.empty_like(since)
@@ -311,9 +312,9 @@ def _arc_of_swing(launch: Launch, side: int) -> "Arc":
         height = above_rest if is_near_rest else below_crest
         distance = root(lambda d: potential.below(-side * d) - height, 0.0, to_crest / 2)
     if is_near_rest:
-        return Arc(launch.oscillator, "rest", turn=side * distance, end=0.0)
+        return Arc(launch.oscillator, "rest", side * distance, end=0.0)
     origin = side * to_crest
-    return Arc(launch.oscillator, "crest", turn=-side * distance, end=-origin, origin=origin)
+    return Arc(launch.oscillator, "crest", -side * distance, end=-origin, origin=origin)
 
 
 def _legs_on_slope(launch: Launch) -> Iterator[Leg]:
@@ -325,6 +326,7 @@ def _legs_on_slope(launch: Launch) -> Iterator[Leg]:
     energy = launch.energy_above_crest
     energy_ahead = launch.energy_above_next_crest if launch.past_crest > 0 else energy + drop
 
+    # Up, in turns. The uphill edge of a turn may be higher than its crest.
     climbed = np.array([])  # E - V at the crest of each turn that is climbed
     if launch.phi_dot < 0:
         climbed = energy - drop * np.arange(MOST_TURNS)
@@ -335,18 +337,23 @@ def _legs_on_slope(launch: Launch) -> Iterator[Leg]:
         energy = energy_ahead - drop
         yield Leg(Turns(launch.oscillator, energies[::-1], uphill=True), turn + 1, energy_ahead)
 
+    # Round, in an arc.
     if energy <= potential.highest:
         yield Leg(_arc_on_slope(launch, energy), turn, min(abs(energy), energy_ahead))
         turn += 1
         energy = energy_ahead
 
+    # Down, in turns.
     for energies in _in_batches(energy + drop * np.arange(MOST_TURNS - len(climbed))):
         yield Leg(Turns(launch.oscillator, energies), turn, float(energies[0]))
         turn += len(energies)
 
 
 def _in_batches(energies: np.ndarray) -> Iterator[np.ndarray]:
-    """Yield energies in batches of 8, 32, 128, and then 256: short motions take few turns."""
+    """Yield energies in batches of 8, 32, 128, and then 256.
+
+    A short motion sets up few turns, and a long one takes no more memory for that.
+    """
     begin = 0
     size = 8
     while begin < len(energies):
@@ -363,15 +370,15 @@ def _arc_on_slope(launch: Launch, energy: float) -> "Arc":
     potential = launch.potential
     if energy == 0 and potential.excess == 0:
         raise NoLibrationError("the motion comes to rest on a crest")
-    if launch.kinetic == 0:
-        return Arc(launch.oscillator, "crest", turn=launch.past_crest, end=math.pi)
+    if launch.kinetic == 0:  # the turning point is the start itself
+        return Arc(launch.oscillator, "crest", launch.past_crest, end=math.pi)
     lowest = 0.0
     highest = math.pi
     if energy > 0:  # it passes the crest uphill, and the well behind it, if there is one
         lowest = -math.pi
         highest = -potential.well
-    turn = root(lambda x: potential.below(x) + energy, lowest, highest)
-    return Arc(launch.oscillator, "crest", turn=turn, end=math.pi)
+    turning_point = root(lambda x: potential.below(x) + energy, lowest, highest)
+    return Arc(launch.oscillator, "crest", turning_point, end=math.pi)
 
 
 # The two kinds of path
@@ -380,39 +387,39 @@ def _arc_on_slope(launch: Launch, energy: float) -> "Arc":
 class Place(NamedTuple):
     """Where on a path a motion is at some times."""
 
-    passage: np.ndarray  # in which of the path's turns, of which the most uphill one is 0
+    passage: np.ndarray  # in which turn of the path; the most uphill one is 0
     angle: np.ndarray  # past the crest of that turn, or past the rest in a swing [rad]
     phi_dot: np.ndarray  # [rad/s]
 
 
 class Arc:
-    """The path from an angle `end` to the turning point `turn` and back.
+    """The path from an angle `end` to the turning point and back.
 
-    Both are measured past a landmark, the crest or the rest [rad], which lies at the angle `origin`
-    of the legs.
+    Both are measured past a landmark, the crest or the rest [rad]. The angle of this landmark, as
+    the angles of legs are counted, is `origin` [rad].
     """
 
     def __init__(
         self,
         oscillator: Oscillator,
         landmark: Literal["crest", "rest"],
-        turn: float,
+        turning_point: float,
         end: float,
         origin: float = 0.0,
     ) -> None:
         self._oscillator = oscillator
         self._landmark = landmark
-        self._turn = turn
+        self._turning_point = turning_point
         self._origin = origin
-        self._side = 1 if end > turn else -1  # of the turning point on which the path lies
-        length = abs(end - turn)
-        self._travel_time = TravelTime(self._dt_ds, 0.0, math.sqrt(length))  # from `turn` to `end`
+        self._side = 1 if end > turning_point else -1  # phi = turning point + side s^2
+        length = abs(end - turning_point)
+        self._travel_time = TravelTime(self._dt_ds, 0.0, math.sqrt(length))  # of the way back
         self.duration = 2 * self._travel_time.duration
 
     def _dt_ds(self, s: np.ndarray) -> np.ndarray:
-        """Return sqrt(2 J / |mean torque|) [s], with phi = turn + side s^2."""
+        """Return sqrt(2 J / |mean torque|) [s]."""
         length = self._side * s**2
-        past = self._turn + length
+        past = self._turning_point + length
         potential = self._oscillator.potential
         phi = potential.rest + past
         if self._landmark == "crest":
@@ -420,22 +427,23 @@ class Arc:
         return np.sqrt(2 * self._oscillator.inertia(phi) / self._mean_torque(length))
 
     def _mean_torque(self, length: np.ndarray | float) -> np.ndarray:
-        """Return |V(turn) - V(turn + length)| / |length| [N m], for a `length` [rad]."""
-        turn = self._turn
+        """Return the size of the mean -V' [N m] along a `length` [rad] from the turning point."""
+        turning_point = self._turning_point
         if self._landmark == "rest":  # V looks the same upside down
-            turn = -turn
+            turning_point = -turning_point
             length = -length
-        return np.abs(self._oscillator.potential.mean_torque(turn, length))
+        return np.abs(self._oscillator.potential.mean_torque(turning_point, length))
 
     def time_of(self, launch: Launch) -> float:
         """Return the time [s] at which a motion that starts on this path is at its start."""
         past = launch.past_rest
         if self._landmark == "crest":
             past = launch.past_crest
-            if past < 0 < self._turn:  # past the crest ahead, while the path is past the one behind
+            # The start may be counted from the crest ahead, and the path from the one behind.
+            if past < 0 < self._turning_point:
                 past += math.tau
-        # From the turning point on, |mean torque| s^2 has become kinetic energy.
-        s = math.sqrt(launch.kinetic / float(self._mean_torque(past - self._turn)))
+        # The kinetic energy is E - V = s^2 |mean torque|.
+        s = math.sqrt(launch.kinetic / float(self._mean_torque(past - self._turning_point)))
         since_turning = math.copysign(self._travel_time.time_at(s), self._side * launch.phi_dot)
         return self.duration / 2 + since_turning
 
@@ -443,9 +451,8 @@ class Arc:
         """Return where the motion is at times [s] since the path began."""
         since_turning = time - self.duration / 2
         s, passage = self._travel_time.psi_at(np.abs(since_turning))
-        angle = self._origin + (self._turn + self._side * s**2)
-        # phi = turn + side s^2, so that its rate is side 2 s ds/dt, and s falls before the turning
-        # point.
+        angle = self._origin + (self._turning_point + self._side * s**2)
+        # phi_dot = side 2 s ds/dt, and s falls before the turning point.
         phi_dot = self._side * np.copysign(2 * s / self._dt_ds(s), since_turning)
         return Place(passage, angle, phi_dot)
 
@@ -499,21 +506,22 @@ def _rounding_delay(launch: Launch, margin: float, latest: float) -> float:
     The motion passes, or misses, crests by an energy of at least `margin` [J].
     """
     potential = launch.potential
-    if potential.depth == 0:  # J and the ramp are constant
+    if potential.depth == 0:  # V is a plane, which has no crest
         return ROUNDINGS * latest
     if potential.curvature == 0:
         # There is no barrier. The torque at the crest is the difference of ramp and depth, which
-        # magnifies their rounding by depth / excess; squared, as `steep` is below.
+        # magnifies their rounding by depth / excess. Squared, this is on the safe side.
         ratio = potential.balanced / potential.excess if potential.excess > 0 else math.inf
         return ROUNDINGS * ratio**2 * latest
 
-    # The curvature is sqrt(depth^2 - ramp^2): if ramp / depth changes by a share, it changes by
-    # steep^2 times that, and the lean of the crest, asin(ramp / depth), by steep times that.
+    # If ramp / depth has a relative error, that of the curvature, sqrt(depth^2 - ramp^2), is
+    # steep^2 times as large, and the lean of the crest, asin(ramp / depth), is off by steep times
+    # the error.
     steep = potential.balanced / potential.curvature
     curvature_error = ROUNDINGS * steep**2  # relative
 
-    # So far is the crest from where it is taken to be. On level ground it is at an odd multiple of
-    # pi, of which doubles miss no more than an eps of the distance.
+    # The crest may be so far from where it is taken to be. On level ground it is at an odd multiple
+    # of pi, from which `past_crest` is known to an eps.
     shift = ROUNDINGS * (abs(potential.bottom) + potential.lean + steep)
     shift += EPS * abs(launch.past_crest)
     torque = abs(float(potential.mean_torque(launch.past_crest, 0.0)))
@@ -521,9 +529,9 @@ def _rounding_delay(launch: Launch, margin: float, latest: float) -> float:
     energy_error += torque * shift + potential.curvature * shift**2
     margin_error = energy_error / margin if margin > 0 else math.inf  # relative
 
-    # Near a crest x grows as exp(lambda t), with lambda^2 = curvature / J. The time there is that
-    # of a logarithm of the margin, over lambda: each time it changes by the relative error of the
-    # margin, over lambda.
+    # Near a crest x grows as exp(lambda t), with lambda^2 = curvature / J. The load spends a time
+    # of about log(1 / margin) / lambda there, which a relative error of the margin changes by that
+    # error / lambda. Until `latest` it comes to some 1 + lambda latest crests at most.
     inertia = float(launch.oscillator.inertia(math.pi + potential.crest_past_pi))
-    lingering = math.sqrt(inertia / potential.curvature)  # 1 / lambda [s]
-    return (curvature_error + margin_error) * (lingering + latest)
+    crest_time = math.sqrt(inertia / potential.curvature)  # 1 / lambda [s]
+    return (curvature_error + margin_error) * (crest_time + latest)
