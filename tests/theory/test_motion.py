@@ -228,11 +228,12 @@ def test_a_start_many_turns_away(scene: Scene, phi_dot0: float, phi0: float) -> 
 
 def test_a_start_on_the_edge_of_a_turn() -> None:
     """Half a turn from the crest, rounding may put the start before its leg, where no path has a place for it."""
-    for incline in np.linspace(0.5, 1.4, 10):
-        scene = frozen(incline)
+    steep = [frozen(incline) for incline in np.linspace(0.5, 1.4, 10)]
+    level = [pendulum(0.0, load_mass=mass) for mass in np.linspace(0.1, 2.0, 10)]
+    for scene in (*steep, *level, frozen(0.0), sliding(), sliding(0.5)):
         edge = scene.oscillator.potential.crest_past_pi  # the crest is at pi more
         for phi0 in (edge, edge + 2 * math.pi):
-            for phi_dot0 in (5.0, -5.0, -20.0):
+            for phi_dot0 in (5.0, -5.0, -20.0, 80.0, -110.0):
                 phi, phi_dot = solve(scene.oscillator, np.array([0.0]), phi0, phi_dot0)
                 assert phi == pytest.approx(phi0, abs=ANGLE)
                 assert phi_dot == pytest.approx(phi_dot0, rel=ROUNDING)

@@ -96,30 +96,34 @@ class Equations:
         self._scene = scene
 
     def rates(self, phi: np.ndarray, phi_dot: np.ndarray, slip_rate: np.ndarray) -> Rates:
-        """Return phi_ddot and w_dot, and their derivatives.
+        """Return phi_ddot and w_dot [rad/s^2], and their derivatives by phi, phi_dot and w.
 
         With c = beta cos(phi) and s = beta sin(phi) the equations are
 
             j phi_ddot = -delta sin(phi - bottom) - s c phi_dot^2 + tau - c braking,
             roll_ddot = drive - s phi_dot^2 + c phi_ddot - braking.
 
-        By phi, c has the derivative -s, s has c, and j has 2 s c: it is constant but for s^2, since
-        J is constant but for (m b sin(phi))^2/M_e. The derivative of tau by w is `tau_by_w`. That
-        of kappa roll_dot |roll_dot| by roll_dot is 2 kappa |roll_dot|, or `drag_by_roll_dot`; as
-        roll_dot = phi_dot + w, it is the derivative by phi_dot, and by w, as well. The derivatives
-        of `braking` by phi, phi_dot and w are therefore 0, drag_by_roll_dot and tau_by_w +
-        drag_by_roll_dot. Those of the first equation are, by phi, phi_dot and w,
+        J is constant but for (m b sin(phi))^2/M_e, so that j is constant but for s^2. With the
+        names `tau_by_w` for the derivative of tau and `drag_by_roll_dot` = 2 kappa |roll_dot| for
+        that of kappa roll_dot |roll_dot|, where roll_dot = phi_dot + w, the derivatives are
+
+            of           c    s    j        tau         braking
+            by phi      -s    c    2 s c    0           0
+            by phi_dot   0    0    0        0           drag_by_roll_dot
+            by w         0    0    0        tau_by_w    tau_by_w + drag_by_roll_dot
+
+        The product rule on the first equation gives
 
             j phi_ddot_by_phi + 2 s c phi_ddot
                 = -delta cos(phi - bottom) - (c^2 - s^2) phi_dot^2 + s braking,
             j phi_ddot_by_phi_dot = -2 s c phi_dot - c drag_by_roll_dot,
             j phi_ddot_by_w = tau_by_w - c (tau_by_w + drag_by_roll_dot).
 
-        From the second equation, w_dot = roll_ddot - phi_ddot is
+        From the second one, w_dot = roll_ddot - phi_ddot is
 
             w_dot = drive - s phi_dot^2 - braking - (1 - c) phi_ddot,
 
-        of which the derivatives are
+        and has the derivatives
 
             w_dot_by_phi = -c phi_dot^2 - s phi_ddot - (1 - c) phi_ddot_by_phi,
             w_dot_by_phi_dot = -2 s phi_dot - drag_by_roll_dot - (1 - c) phi_ddot_by_phi_dot,
@@ -144,9 +148,9 @@ class Equations:
         drag_by_roll_dot = 2 * kappa * np.abs(roll_dot)
         braking = scene.damping_law.torque(slip_rate) / unit + drag_by_roll_dot * roll_dot / 2
 
-        weight_by_phi = -delta * np.cos(phi - oscillator.bottom)
-        phi_ddot_by_phi = weight_by_phi - (c * c - s * s) * square + s * braking
-        phi_ddot_by_phi = (phi_ddot_by_phi - 2 * s * c * phi_ddot) / j
+        right_by_phi = -delta * np.cos(phi - oscillator.bottom)
+        right_by_phi += s * braking - (c * c - s * s) * square
+        phi_ddot_by_phi = (right_by_phi - 2 * s * c * phi_ddot) / j
         phi_ddot_by_phi_dot = (-2 * s * c * phi_dot - c * drag_by_roll_dot) / j
         phi_ddot_by_w = ((1 - c) * tau_by_w - c * drag_by_roll_dot) / j
 
@@ -229,7 +233,11 @@ class Progress:
     """How far each has been from the start [rad], at least 1."""
 
     def advance(self, step: Step) -> None:
-        """Go on to the end of a step."""
+        """Go on to the end of a step.
+
+        Raises:
+          ToleranceError: if rounding may have changed phi or roll too much by then.
+        """
         phi_dot_errors, slip_errors = step.stages.errors
         roll_dot_errors = phi_dot_errors + slip_errors
         # The last row of the matrix integrates up to the end of the step.

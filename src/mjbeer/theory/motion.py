@@ -238,7 +238,7 @@ def _follow(launch: Launch, time: np.ndarray) -> Course:
 
 def _follow_periods(launch: Launch, legs: list[Leg], advance: float, time: np.ndarray) -> Course:
     """Return the course of a motion that repeats its `legs`, `advance` [rad] further each time."""
-    since = time + legs[0].path.time_of(launch)
+    since = time + _begin(legs[0], launch)
     periods, since = np.divmod(since, sum(leg.path.duration for leg in legs))
     course = _follow_legs(launch, legs, since)
     return course._replace(delta_phi=course.delta_phi + advance * periods)
@@ -248,7 +248,7 @@ def _follow_slope(launch: Launch, time: np.ndarray) -> Course:
     """Return the course of a motion on a slope that passes crests."""
     legs = _legs_on_slope(launch)
     first = next(legs)
-    begin = max(0.0, first.path.time_of(launch))  # at a turn's edge, rounding may make it negative
+    begin = _begin(first, launch)
     since = time + begin
     course = _follow_legs(launch, chain([first], legs), since)
     if not np.max(since, initial=0.0) < course.end:
@@ -259,13 +259,19 @@ def _follow_slope(launch: Launch, time: np.ndarray) -> Course:
     return course
 
 
+def _begin(first: Leg, launch: Launch) -> float:
+    """Return the time [s] at which the motion starts on its first leg."""
+    # At the edge of a turn rounding may make it negative, where there is no leg.
+    return max(0.0, first.path.time_of(launch))
+
+
 def _follow_legs(launch: Launch, legs: Iterable[Leg], since: np.ndarray) -> Course:
     """Return the course at times [s] since the first of the `legs` began, as far as they lead."""
     # The angles of legs are past the rest in a swing, and else past the crest of each turn.
     begin_angle = launch.past_rest if launch.swings else launch.past_crest
     latest = float(np.max(since, initial=0.0))
-    delta_phi = np.empty_like(since)
-    phi_dot = np.empty_like(since)
+    delta_phi = np.full_like(since, math.nan)  # a time on no leg would not go unnoticed
+    phi_dot = np.full_like(since, math.nan)
     margin = math.inf
     end = 0.0
     for leg in legs:

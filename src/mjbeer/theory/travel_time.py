@@ -1,7 +1,7 @@
 """The time that a motion takes along a path, and where on the path it is at a given time.
 
-A path is described by a parameter psi, which grows along it, and by the slowness dt/dpsi, which is
-smooth and positive. What is wanted is the integral
+A path has a parameter psi, which grows along it. dt/dpsi, which is smooth and positive, is known.
+What is wanted is the integral
 
     t(psi) = integral of dt/dpsi from the beginning of the path to psi,
 
@@ -41,7 +41,7 @@ class Panels(NamedTuple):
 
     lows: np.ndarray  # psi at their beginning, of shape (panels,)
     halves: np.ndarray  # half their width, of shape (panels,)
-    rates: np.ndarray  # dt/dpsi [s] at their nodes, of shape (panels, passages, nodes)
+    values: np.ndarray  # dt/dpsi [s] at their nodes, of shape (panels, passages, nodes)
 
 
 class TravelTime:
@@ -51,23 +51,23 @@ class TravelTime:
     passages.
     """
 
-    def __init__(self, rate: Callable[[np.ndarray], np.ndarray], *edges: float) -> None:
-        """Set up a path with dt/dpsi = `rate` [s] from the first to the last of the `edges`.
+    def __init__(self, dt_dpsi: Callable[[np.ndarray], np.ndarray], *edges: float) -> None:
+        """Set up a path with `dt_dpsi` [s] from the first to the last of the `edges`.
 
-        Panels begin and end at all edges. For psi of shape (panels, nodes) `rate` returns (panels,
+        Panels begin and end at all edges. For psi of shape (panels, nodes) it returns (panels,
         nodes), or (passages, panels, nodes) if there are several passages; the first of them has
-        the roughest rate.
+        the roughest of them.
 
         Raises:
-          ToleranceError: if the rate is too rough, or no number.
+          ToleranceError: if dt/dpsi is too rough, or no number.
         """
-        panels = _resolve(rate, edges)
-        passages = panels.rates.shape[1]
+        panels = _resolve(dt_dpsi, edges)
+        passages = panels.values.shape[1]
         self._count = len(panels.lows)
         # From here on a panel has a row for each passage, in the order of time.
         self._lows = np.tile(panels.lows, passages)
         self._halves = np.tile(panels.halves, passages)
-        self._series = panels.rates.swapaxes(0, 1).reshape(-1, len(_NODES)) @ _TO_SERIES
+        self._series = panels.values.swapaxes(0, 1).reshape(-1, len(_NODES)) @ _TO_SERIES
         # At the end of a panel, x = 1 and each T_k is 1: a series is the sum of its coefficients.
         durations = self._series @ _TO_INTEGRAL.sum(axis=1) * self._halves
         self._starts = np.concatenate([[0.0], np.cumsum(durations)])  # the last is the path's end
@@ -89,14 +89,14 @@ class TravelTime:
         half = self._halves[row]
         since = time - self._starts[row]
         duration = self._starts[row + 1] - self._starts[row]
-        # If the rate were constant, x would be this:
+        # If dt/dpsi were constant, x would be this:
         guess = np.clip(2 * since / duration - 1, -1, 1)
         x = _invert(self._series[row], since / half, guess)
         return self._lows[row] + half * np.clip(1 + x, 0, 2), row // self._count
 
 
-def _resolve(rate: Callable[[np.ndarray], np.ndarray], edges: tuple[float, ...]) -> Panels:
-    """Return panels on which series reproduce the `rate`, each as wide as that allows."""
+def _resolve(dt_dpsi: Callable[[np.ndarray], np.ndarray], edges: tuple[float, ...]) -> Panels:
+    """Return panels on which series reproduce dt/dpsi, each as wide as that allows."""
     finished: list[Panels] = []
     tried = 0
     lows = np.array(edges[:-1])
@@ -104,29 +104,29 @@ def _resolve(rate: Callable[[np.ndarray], np.ndarray], edges: tuple[float, ...])
     while len(lows):
         halves = (ends - lows) / 2
         middles = lows + halves
-        rates = rate(lows[:, None] + halves[:, None] * (1 + _NODES))
-        rates = rates.reshape(-1, *rates.shape[-2:]).swapaxes(0, 1)  # (panels, passages, nodes)
+        values = dt_dpsi(lows[:, None] + halves[:, None] * (1 + _NODES))
+        values = values.reshape(-1, *values.shape[-2:]).swapaxes(0, 1)  # (panels, passages, nodes)
         tried += len(lows)
         can_be_halved = (lows < middles) & (middles < ends)
-        if tried > _MOST_PANELS or not np.isfinite(rates).all() or not can_be_halved.all():
+        if tried > _MOST_PANELS or not np.isfinite(values).all() or not can_be_halved.all():
             raise ToleranceError(
                 "the time along this motion is beyond doubles: sizes, masses, gravity or speeds "
                 "are of too many different orders of magnitude"
             )
-        done = _are_resolved(rates[:, 0], lows, halves)
-        finished.append(Panels(lows[done], halves[done], rates[done]))
+        done = _are_resolved(values[:, 0], lows, halves)
+        finished.append(Panels(lows[done], halves[done], values[done]))
         # The others are halved: first come all lower halves, then all upper ones.
         rest = ~done
         ends = np.concatenate([middles[rest], ends[rest]])
         lows = np.concatenate([lows[rest], middles[rest]])
-    lows, halves, rates = (np.concatenate(parts) for parts in zip(*finished, strict=True))
+    lows, halves, values = (np.concatenate(parts) for parts in zip(*finished, strict=True))
     order = np.argsort(lows)
-    return Panels(lows[order], halves[order], rates[order])
+    return Panels(lows[order], halves[order], values[order])
 
 
-def _are_resolved(rates: np.ndarray, lows: np.ndarray, halves: np.ndarray) -> np.ndarray:
-    """Return which panels reproduce `rates` by a series, as well as rounding of psi lets them."""
-    coefficients = np.abs(rates @ _TO_SERIES)
+def _are_resolved(values: np.ndarray, lows: np.ndarray, halves: np.ndarray) -> np.ndarray:
+    """Return which panels reproduce `values` by a series, as well as rounding of psi lets them."""
+    coefficients = np.abs(values @ _TO_SERIES)
     size = coefficients.max(axis=1)
     tail = coefficients[:, -3:].max(axis=1)
     # Noise shows as small coefficients that have stopped falling. Rounding of psi changes dt/dpsi
