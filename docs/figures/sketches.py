@@ -23,7 +23,14 @@ def on_circle(angle: float | np.ndarray, radius: float = 1.0) -> np.ndarray:
     return radius * np.transpose([np.sin(angle), -np.cos(angle)])
 
 
-def arrow(axes: Axes, start: np.ndarray, end: np.ndarray, colour: str, style: str = "-|>", **more: str) -> None:
+def arrow(
+    axes: Axes,
+    start: np.ndarray,
+    end: np.ndarray,
+    colour: str,
+    style: str = "-|>",
+    **more: str | float,
+) -> None:
     """Draw an arrow."""
     look = {"arrowstyle": style, "color": colour, "shrinkA": 0, "shrinkB": 0, "linewidth": 1.4} | more
     axes.annotate("", tuple(end), tuple(start), arrowprops=look)
@@ -143,8 +150,8 @@ def draw_swing(axes: Axes) -> None:
     landscape(axes, scene, low - 0.6, crest + 0.9, energy)
     marked = np.array([crest, rest])
     axes.plot(marked, height(scene, marked), "o", color="black", markersize=4)
-    write(axes, "crest", (crest, height(scene, crest) + 0.2))
-    write(axes, "rest", (rest, height(scene, rest) - 0.2))
+    write(axes, "crest", (crest, float(height(scene, crest)) + 0.2))
+    write(axes, "rest", (rest, float(height(scene, rest)) - 0.2))
     leg(axes, rest, turn, energy, ARC, "<|-|>")
     leg(axes, rest, other_turn, energy, OTHER_ARC, "<|-|>")
     for place, colour in ((turn, ARC), (other_turn, OTHER_ARC)):
@@ -160,7 +167,7 @@ def draw_swing(axes: Axes) -> None:
             arrowprops={"arrowstyle": "-", "color": GREY, "linewidth": 0.8},
         )
     write(axes, "E", (low - 0.45, energy + 0.14), GREY)
-    write(axes, "V", (low - 0.2, height(scene, low - 0.45)))
+    write(axes, "V", (low - 0.2, float(height(scene, low - 0.45))))
     axes.set_title("a swing", loc="center", fontweight="bold")
 
 

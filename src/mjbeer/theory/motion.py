@@ -30,11 +30,11 @@ a load that starts downhill does only the last part of this. (`docs/physics.md` 
 rotation with phi_dot > 0. Other motions are reflected when they start, in `Launch.of`, and
 reflected back at the end of `solve`.
 
-**Digits.** Beside a separatrix the load hesitates near a crest, for a time that grows as -log|E -
-V(crest)|. That energy is a small difference of large numbers. It keeps its digits because angles
-are measured from the crest or the rest nearby and `Potential` has the differences of V from there.
-What remains is the rounding of the scene and of the start themselves. A motion that it may change
-noticeably is refused.
+**Digits.** Beside a separatrix the load hesitates near a crest, the longer the smaller |E - V| is
+there: the time grows as its logarithm. This energy is a small difference of large numbers. It keeps
+its digits because angles are measured from the nearest crest or rest, and `Potential` has the
+differences of V from there. What remains is the rounding of the scene and of the start themselves.
+A motion that this may change noticeably is refused.
 """
 
 import math
@@ -260,8 +260,8 @@ def _follow_slope(launch: Launch, time: np.ndarray) -> Course:
 
 
 def _begin(first: Leg, launch: Launch) -> float:
-    """Return the time [s] at which the motion starts on its first leg."""
-    # At the edge of a turn rounding may make it negative, where there is no leg.
+    """Return how long the first leg had lasted when the motion started on it [s]."""
+    # At the edge of a turn rounding may make this negative, where there is no leg.
     return max(0.0, first.path.time_of(launch))
 
 
@@ -441,7 +441,7 @@ class Arc:
         return np.abs(self._oscillator.potential.mean_torque(turning_point, length))
 
     def time_of(self, launch: Launch) -> float:
-        """Return the time [s] at which a motion that starts on this path is at its start."""
+        """Return how long this path had lasted when the motion started on it [s]."""
         past = launch.past_rest
         if self._landmark == "crest":
             past = launch.past_crest
@@ -490,7 +490,7 @@ class Turns:
         return np.sqrt(2 * (energy + potential.below(x)) / inertia)
 
     def time_of(self, launch: Launch) -> float:
-        """Return the time [s] at which a motion that starts on this path is at its start."""
+        """Return how long this path had lasted when the motion started on it [s]."""
         if self._uphill:
             lowest_turn = len(self._energies) - 1
             return self.duration - self._travel_time.time_at(launch.past_crest, lowest_turn)
