@@ -50,10 +50,17 @@ _STAGES = 24  # s in formulas; a swing then takes some five steps a period
 _MOST_CORRECTIONS = 6_000  # of Newton's method in all: enough for beer that swings 1 rad for 40 s
 
 
-def solve(
-    scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Return phi [rad], phi_dot [rad/s], u [m] and u_dot [m/s] at times [s].
+class DampedMotion(NamedTuple):
+    """A motion at some times."""
+
+    phi: np.ndarray  # [rad]
+    phi_dot: np.ndarray  # [rad/s]
+    u: np.ndarray  # [m]
+    u_dot: np.ndarray  # [m/s]
+
+
+def solve(scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float) -> DampedMotion:
+    """Return the motion of a scene with damping or drag at times [s], none of them negative.
 
     Raises:
       ToleranceError: as `exact`.
@@ -62,12 +69,17 @@ def solve(
     u0, u_dot0 = scene.start(phi0, phi_dot0)
     if scene.incline == 0 and Launch.of(scene.oscillator, phi0, phi_dot0).stays:
         zeros = np.zeros_like(time)
-        return phi0 + zeros, zeros, u0 + zeros, zeros
+        return DampedMotion(phi0 + zeros, zeros, u0 + zeros, zeros)
     order = np.argsort(time)
     initial_state = np.array([reduced(phi0), phi_dot0, u_dot0 / radius - phi_dot0])
     samples = _integrate(Equations(scene), time[order], initial_state)
     delta_phi, delta_roll, phi_dot, slip_rate = samples[:, np.argsort(order)]
-    return phi0 + delta_phi, phi_dot, u0 + radius * delta_roll, radius * (phi_dot + slip_rate)
+    return DampedMotion(
+        phi=phi0 + delta_phi,
+        phi_dot=phi_dot,
+        u=u0 + radius * delta_roll,
+        u_dot=radius * (phi_dot + slip_rate),
+    )
 
 
 # The equations and their derivatives
@@ -392,8 +404,9 @@ def _solve_stages(
     last_size = math.inf
     for corrections in range(1, 13):
         values, jacobian = equations.rates(state[0] + reach @ stages[0], *stages)
-        for variable, rows in enumerate((slice(0, _STAGES), slice(_STAGES, unknowns))):
-            by_phi, by_phi_dot, by_w = jacobian[variable]
+        for rate in range(2):  # phi_ddot, and then w_dot
+            by_phi, by_phi_dot, by_w = jacobian[rate]
+            rows = slice(rate * _STAGES, (rate + 1) * _STAGES)
             derivatives[rows, :_STAGES] = reach * by_phi_dot + (reach * by_phi) @ reach
             derivatives[rows, _STAGES:] = reach * by_w
         sides[..., 0] = begin + values @ reach.T - stages
