@@ -106,6 +106,10 @@ class Equations:
         self.corners = np.reshape(corners, (-1, 2))
         """A row for each rate with a corner where it is 0: the factors of phi_dot and w in it."""
         self._scene = scene
+        self._unit = scene.effective_mass * scene.can.radius**2  # M_e a^2
+        self._beta = scene.load.moment / scene.effective_mass / scene.can.radius
+        self._kappa = scene.drag * scene.can.radius / scene.effective_mass
+        self._delta = scene.oscillator.depth / self._unit
 
     def rates(self, phi: np.ndarray, phi_dot: np.ndarray, slip_rate: np.ndarray) -> Rates:
         """Return phi_ddot and w_dot [rad/s^2], and their derivatives by phi, phi_dot and w.
@@ -144,31 +148,30 @@ class Equations:
         scene = self._scene
         oscillator = scene.oscillator
         radius = scene.can.radius
-        unit = scene.effective_mass * radius**2  # M_e a^2
-        beta = scene.load.moment / scene.effective_mass / radius
-        kappa = scene.drag * radius / scene.effective_mass
-        delta = oscillator.depth / unit
-        j = oscillator.inertia(phi) / unit
-        c = beta * np.cos(phi)
-        s = beta * np.sin(phi)
+        j = oscillator.inertia(phi) / self._unit
+        c = self._beta * np.cos(phi)
+        s = self._beta * np.sin(phi)
+        gap = 1 - c
         square = phi_dot * phi_dot
         roll_dot = phi_dot + slip_rate
         u_ddot, phi_ddot = accelerations(scene, phi, phi_dot, radius * roll_dot, slip_rate)
         w_dot = u_ddot / radius - phi_ddot
 
-        tau_by_w = scene.damping_law.derivative(slip_rate) / unit
-        drag_by_roll_dot = 2 * kappa * np.abs(roll_dot)
-        braking = scene.damping_law.torque(slip_rate) / unit + drag_by_roll_dot * roll_dot / 2
+        tau_by_w = scene.damping_law.derivative(slip_rate) / self._unit
+        drag_by_roll_dot = 2 * self._kappa * np.abs(roll_dot)
+        tau = scene.damping_law.torque(slip_rate) / self._unit
+        braking = tau + drag_by_roll_dot * roll_dot / 2
 
-        right_by_phi = -delta * np.cos(phi - oscillator.bottom)
+        right_by_phi = -self._delta * np.cos(phi - oscillator.bottom)
         right_by_phi += s * braking - (c * c - s * s) * square
-        phi_ddot_by_phi = (right_by_phi - 2 * s * c * phi_ddot) / j
-        phi_ddot_by_phi_dot = (-2 * s * c * phi_dot - c * drag_by_roll_dot) / j
-        phi_ddot_by_w = ((1 - c) * tau_by_w - c * drag_by_roll_dot) / j
+        j_by_phi = 2 * s * c
+        phi_ddot_by_phi = (right_by_phi - j_by_phi * phi_ddot) / j
+        phi_ddot_by_phi_dot = (-j_by_phi * phi_dot - c * drag_by_roll_dot) / j
+        phi_ddot_by_w = (gap * tau_by_w - c * drag_by_roll_dot) / j
 
-        w_dot_by_phi = -c * square - s * phi_ddot - (1 - c) * phi_ddot_by_phi
-        w_dot_by_phi_dot = -2 * s * phi_dot - drag_by_roll_dot - (1 - c) * phi_ddot_by_phi_dot
-        w_dot_by_w = -tau_by_w - drag_by_roll_dot - (1 - c) * phi_ddot_by_w
+        w_dot_by_phi = -c * square - s * phi_ddot - gap * phi_ddot_by_phi
+        w_dot_by_phi_dot = -2 * s * phi_dot - drag_by_roll_dot - gap * phi_ddot_by_phi_dot
+        w_dot_by_w = -tau_by_w - drag_by_roll_dot - gap * phi_ddot_by_w
         return Rates(
             np.array([phi_ddot, w_dot]),
             np.array(
@@ -415,12 +418,12 @@ def _solve_stages(
             solved = np.linalg.solve(identity - derivatives, sides.reshape(unknowns, 2))
         except np.linalg.LinAlgError:
             return corrections, None
-        change, changed_errors = np.moveaxis(solved.reshape(sides.shape), -1, 0)
+        change = solved[:, 0].reshape(stages.shape)
         stages = stages + change
         largest = np.maximum(scale, np.abs(stages).max(axis=1))
         size = float((np.abs(change).max(axis=1) / largest).max())
         if last_size < 1e-9:  # each correction squares the error, and this one left rounding
-            return corrections, Stages(stages, changed_errors)
+            return corrections, Stages(stages, solved[:, 1].reshape(stages.shape))
         if not size < 1e6:
             return corrections, None
         last_size = size
