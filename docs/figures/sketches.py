@@ -1,4 +1,7 @@
-"""Draws the sketches of `docs/how-it-works.md` and `docs/real_beer.md`: `python docs/figures/sketches.py`."""
+"""Draws the sketches of `docs/how-it-works.md`, `real_beer.md` and `physics.md`.
+
+Run it as `python docs/figures/sketches.py`.
+"""
 
 import math
 import pathlib
@@ -7,6 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Polygon
 
+from mjbeer import Scene, frozen
 from mjbeer.output.plots import COLOURS, GREY, chart
 
 HERE = pathlib.Path(__file__).parent
@@ -19,7 +23,14 @@ def on_circle(angle: float | np.ndarray, radius: float = 1.0) -> np.ndarray:
     return radius * np.transpose([np.sin(angle), -np.cos(angle)])
 
 
-def arrow(axes: Axes, start: np.ndarray, end: np.ndarray, colour: str, style: str = "-|>", **more: str) -> None:
+def arrow(
+    axes: Axes,
+    start: np.ndarray,
+    end: np.ndarray,
+    colour: str,
+    style: str = "-|>",
+    **more: str | float,
+) -> None:
     """Draw an arrow."""
     look = {"arrowstyle": style, "color": colour, "shrinkA": 0, "shrinkB": 0, "linewidth": 1.4} | more
     axes.annotate("", tuple(end), tuple(start), arrowprops=look)
@@ -103,6 +114,101 @@ def draw_layer() -> None:
         axes.set(xlim=(-2.2, 2.2), ylim=(-1.35, 1.1))
 
 
+ARC, OTHER_ARC, TURNS = COLOURS[0], COLOURS[2], COLOURS[1]
+
+
+def height(scene: Scene, phi: float | np.ndarray) -> np.ndarray:
+    """Return V(phi) - V(0), divided by its amplitude."""
+    oscillator = scene.oscillator
+    return -oscillator.drop(phi, 0.0) / oscillator.depth
+
+
+def landscape(axes: Axes, scene: Scene, low: float, high: float, energy: float) -> None:
+    """Draw V between two angles, and E, both divided by the amplitude of V."""
+    phi = np.linspace(low, high, 401)
+    axes.plot(phi, height(scene, phi), color="black", linewidth=1.5)
+    axes.axhline(energy, color=GREY, linestyle="--", linewidth=1)
+    axes.set(xticks=[], yticks=[], xlabel="φ")
+    axes.margins(y=0.15)
+    axes.grid(visible=False)
+
+
+def leg(axes: Axes, begin: float, end: float, level: float, colour: str, style: str) -> None:
+    """Draw a leg of a motion between two angles, at the height `level`."""
+    arrow(axes, np.array([begin, level]), np.array([end, level]), colour, style, linewidth=2)
+
+
+def draw_swing(axes: Axes) -> None:
+    """Draw the legs of a swing, two arcs that meet at the rest."""
+    scene = frozen(math.radians(8))
+    rest = scene.equilibrium()
+    low, crest = scene.separatrix()
+    turn = rest + 1.9
+    energy = float(height(scene, turn))
+    behind = np.linspace(low, rest, 10_001)
+    other_turn = float(behind[height(scene, behind) < energy][0])
+    landscape(axes, scene, low - 0.6, crest + 0.9, energy)
+    marked = np.array([crest, rest])
+    axes.plot(marked, height(scene, marked), "o", color="black", markersize=4)
+    write(axes, "crest", (crest, float(height(scene, crest)) + 0.2))
+    write(axes, "rest", (rest, float(height(scene, rest)) - 0.2))
+    leg(axes, rest, turn, energy, ARC, "<|-|>")
+    leg(axes, rest, other_turn, energy, OTHER_ARC, "<|-|>")
+    for place, colour in ((turn, ARC), (other_turn, OTHER_ARC)):
+        axes.plot(place, energy, "o", color=colour, markersize=5)
+    write(axes, "arc", ((rest + turn) / 2, energy + 0.17), ARC)
+    write(axes, "arc", ((rest + other_turn) / 2, energy + 0.17), OTHER_ARC)
+    write(axes, "turning points, s = 0", (rest, energy + 0.55), GREY, fontsize="small")
+    for place in (turn, other_turn):
+        axes.annotate(
+            "",
+            (place, energy + 0.08),
+            (rest + 0.35 * (place - rest), energy + 0.48),
+            arrowprops={"arrowstyle": "-", "color": GREY, "linewidth": 0.8},
+        )
+    write(axes, "E", (low - 0.45, energy + 0.14), GREY)
+    write(axes, "V", (low - 0.2, float(height(scene, low - 0.45))))
+    axes.set_title("a swing", loc="center", fontweight="bold")
+
+
+def draw_slope(axes: Axes) -> None:
+    """Draw the legs of a load that climbs a slope and rolls down again."""
+    scene = frozen(math.radians(8))
+    crest = scene.separatrix()[1]
+    first = crest - math.pi  # the edge between two turns
+    turn = first - 1.6
+    energy = float(height(scene, turn))
+    landscape(axes, scene, turn - 0.6, first + 4 * math.pi + 0.5, energy)
+    leg(axes, first, turn, energy + 0.3, ARC, "-")
+    leg(axes, turn, first, energy - 0.3, ARC, "-|>")
+    axes.plot([turn, turn], [energy - 0.3, energy + 0.3], color=ARC, linewidth=2)
+    axes.plot(turn, energy, "o", color=ARC, markersize=5)
+    write(axes, "arc", ((turn + first) / 2, energy + 0.7), ARC)
+    for place in range(2):
+        edge = first + math.tau * place
+        leg(axes, edge + math.tau, edge, energy + 0.3, TURNS, "-|>")
+        leg(axes, edge, edge + math.tau, energy - 0.3, TURNS, "-|>")
+        middle = crest + math.tau * place
+        axes.plot(middle, height(scene, middle), "o", color="black", markersize=4)
+        axes.plot([middle, middle], [height(scene, middle), energy], ":", color=GREY)
+        axes.plot([edge, edge], [energy - 0.5, energy + 0.5], color=GREY, linewidth=0.8)
+    write(axes, "turn", (crest, energy + 0.7), TURNS)
+    write(axes, "turn", (crest + math.tau, energy + 0.7), TURNS)
+    write(axes, "uphill", (first + math.tau + 0.2, energy + 1.1), TURNS, fontsize="small")
+    write(axes, "downhill", (first + math.tau + 0.2, energy - 0.8), TURNS, fontsize="small")
+    beside = (crest + math.tau + 0.3, energy - 1.6)
+    write(axes, "energy\nat the crest", beside, GREY, ha="left", fontsize="small")
+    axes.set_title("up a slope and down again", loc="center", fontweight="bold")
+
+
+def draw_legs() -> None:
+    """Draw the legs into which exact theory cuts a motion."""
+    with chart(HERE / "legs", 1, 2, 11, 4) as (swing, slope):
+        draw_swing(swing)
+        draw_slope(slope)
+
+
 if __name__ == "__main__":
     draw_rolling()
     draw_layer()
+    draw_legs()

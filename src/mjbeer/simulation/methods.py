@@ -109,7 +109,7 @@ def finer_gauss_jackson(
     phi0 = float(start[stepped.model.nq - 1])
     phi_dot0 = float(start[-1])
     first = first_timestep(law, phi0, phi_dot0, duration, tolerance)
-    time = sundman_time(law, law.inertia(phi0), 1e-3 * tolerance, first.largest_turn)
+    time = sundman_time(law, law.inertia(phi0), 1e-3 * min(tolerance, 1.0), first.largest_turn)
     timestep = first.timestep
     for _ in range(_FINER_RUNS):
         yield GaussJackson(stepped.dynamics, timestep, time)

@@ -1,182 +1,430 @@
-"""The motion of a damped sliding scene to rounding, step by step: no first integral makes it a quadrature.
+"""The motion of a sliding load with damping or drag, to rounding.
 
-With rolling built in, the variables are phi, its rate, and the slip rate w = roll_dot - phi_dot, which keeps its digits
-where the damping is strong and w small. Divided by M a^2, with M = m + m_can + I_can/a^2, only rates remain:
+**The problem.** Damping and drag take energy, so that the time is no longer an integral over phi,
+as it is in `motion`. The equations are integrated step by step instead.
 
-    roll_ddot = drive - beta (sin(phi) phi_dot^2 - cos(phi) phi_ddot) - torque(w) - drag roll_dot |roll_dot|,
-    inertia(phi) phi_ddot = -depth sin(phi - bottom) - beta^2 sin(phi) cos(phi) phi_dot^2
-                            + (1 - beta cos(phi)) torque(w) - beta cos(phi) drag roll_dot |roll_dot|.
+**The equations** are (46) and (47) with the torque T(w) of the damping and the drag
+d u_dot |u_dot|. The variables are phi, phi_dot and the slip rate w = roll_dot - phi_dot, with
+roll = u/a. Where the damping is strong, w is small, and as a difference it would lose its digits.
+With M_e = m + m_can + I_can/a^2, (46) is divided by M_e a and (47) by M_e a^2. With u_ddot
+eliminated from (47) they are
 
-Each step is a series of Legendre polynomials, x = -1 to 1, that obeys the equations at its Radau points: Radau IIA of
-order 2s - 1, which is L-stable, so that what has decayed takes no small steps. (E. Hairer and G. Wanner, Solving
-Ordinary Differential Equations II, IV.5.) A step that would pass a corner, where w or roll_dot is zero, ends there.
+    roll_ddot = drive - beta (sin(phi) phi_dot^2 - cos(phi) phi_ddot) - braking,
+    j(phi) phi_ddot = -delta sin(phi - bottom) - beta^2 sin(phi) cos(phi) phi_dot^2
+                      + tau(w) - beta cos(phi) braking,
+    braking = tau(w) + kappa roll_dot |roll_dot|,
+
+with drive = m_t g sin(alpha)/(M_e a), beta = m b/(M_e a), tau = T/(M_e a^2), kappa = d a/M_e,
+j = J/(M_e a^2) and delta = depth/(M_e a^2). J, `depth` and `bottom` are those of `Oscillator`.
+
+**The method.** In each step, phi_dot and w are polynomials in x = -1 to 1 that obey the equations
+at the Radau points. This method, Radau IIA with 24 stages, has the order 47. It is L-stable: a
+fast decay takes small steps only as long as it lasts. (E. Hairer and G. Wanner, Solving Ordinary
+Differential Equations II, IV.5.) The coefficients of the polynomials in Legendre's tell whether the
+step is resolved to rounding. The same series give the motion between the ends of the step.
+
+**Corners.** The slopes of w |w|, which a damping may contain, and of roll_dot |roll_dot| have
+corners where w or roll_dot is zero. No polynomial follows them. A step that would pass a corner
+ends there instead.
+
+**Rounding.** The derivatives that Newton's method needs also tell how errors of the start grow.
+These are carried along, and a motion that rounding may change noticeably is refused.
 """
 
 import itertools
 import math
-from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
 
 from mjbeer.exceptions import ToleranceError
 from mjbeer.theory.equations import accelerations
-from mjbeer.theory.motion import EPS, ROUNDINGS, UNCERTAIN, Start
+from mjbeer.theory.motion import ROUNDINGS, UNCERTAIN, Launch
 from mjbeer.theory.oscillator import reduced, root
 from mjbeer.theory.scene import Scene
+from mjbeer.theory.travel_time import EPS
 
-_STAGES = 24  # s: of order 47, a swing takes some five steps a period to rounding
-_WORK = 6_000  # most corrections of Newton's method in all: a can of beer that swings by 1 rad takes them in 40 s
-
-Rates = Callable[[np.ndarray, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
-
-
-_RADAU_POINTS = np.sort(legendre.legroots([0.0] * (_STAGES - 1) + [-1.0, 1.0]).real)  # of P_s - P_(s-1); the last is 1
-_NODES = np.array([-1.0, *_RADAU_POINTS[:-1], 1.0])  # the start and the stages of a step
-_INTEGRALS = legendre.legint(np.linalg.inv(legendre.legvander(_NODES[1:], _STAGES - 1)), lbnd=-1) / 2
-"""The coefficients P_0 to P_s of the integral, over a step of length 1, of the polynomial through values at stages."""
-_MATRIX = legendre.legvander(_NODES[1:], _STAGES) @ _INTEGRALS  # that integral at the stages, a_ij of the method
-_TO_SERIES = np.linalg.inv(legendre.legvander(_NODES, _STAGES))
-"""The coefficients P_0 to P_s of the polynomial through values at the start and the stages."""
+_STAGES = 24  # s in formulas; a swing then takes some five steps a period
+_MOST_CORRECTIONS = 6_000  # of Newton's method in all: enough for beer that swings 1 rad for 40 s
 
 
-def _rates_of(scene: Scene) -> Rates:
-    """Return a function of phi, phi_dot and w: phi_ddot and w_dot [rad/s^2], and their derivatives, (2, 3, ...)."""
-    oscillator, law, radius, mass = scene.oscillator, scene.damping_law, scene.can.radius, scene.effective_mass
-    unit, beta, air = mass * radius**2, scene.load.moment / mass / radius, scene.drag * radius / mass
+class DampedMotion(NamedTuple):
+    """A motion at some times."""
 
-    def rates(phi: np.ndarray, phi_dot: np.ndarray, slip: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        roll_dot = phi_dot + slip
-        u_ddot, phi_ddot = accelerations(scene, phi, phi_dot, radius * roll_dot, slip)
-        arm, lean, square = beta * np.cos(phi), beta * np.sin(phi), phi_dot * phi_dot
-        d_torque, d_drag, open_arm = law.derivative(slip) / unit, 2 * air * np.abs(roll_dot), 1 - arm
-        braking = law.torque(slip) / unit + d_drag * roll_dot / 2
-        by_phi = -oscillator.depth / unit * np.cos(phi - oscillator.bottom) - (arm * arm - lean * lean) * square
-        by_phi += lean * braking - 2 * lean * arm * phi_ddot
-        swing = np.array([by_phi, -2 * lean * arm * phi_dot - arm * d_drag, open_arm * d_torque - arm * d_drag])
-        swing /= oscillator.inertia(phi) / unit
-        slide = np.array([-arm * square - lean * phi_ddot, -2 * lean * phi_dot - d_drag, -d_torque - d_drag])
-        return np.array([phi_ddot, u_ddot / radius - phi_ddot]), np.array([swing, slide - open_arm * swing])
-
-    return rates
+    phi: np.ndarray  # [rad]
+    phi_dot: np.ndarray  # [rad/s]
+    u: np.ndarray  # [m]
+    u_dot: np.ndarray  # [m/s]
 
 
-def solve(scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float) -> tuple[np.ndarray, ...]:
-    """Return phi [rad], phi_dot [rad/s], u [m] and u_dot [m/s] at times [s], with the errors of `exact`."""
-    radius, (u0, u_dot0) = scene.can.radius, scene.start(phi0, phi_dot0)
-    if scene.incline == 0 and Start.at(scene.oscillator, phi0, phi_dot0).stays(phi0):
-        still = np.zeros_like(time)
-        return phi0 + still, still, u0 + still, still
-    order = np.argsort(time)
-    swing_rate = math.sqrt(scene.oscillator.depth / scene.oscillator.base)
-    start = np.array([reduced(phi0), phi_dot0, u_dot0 / radius - phi_dot0])
-    corners = [[0.0, 1.0]] * (scene.damping_law.quadratic > 0) + [[1.0, 1.0]] * (scene.drag > 0)
-    followed = _integrate(_rates_of(scene), time[order], start, swing_rate, np.reshape(corners, (-1, 2)))
-    delta_phi, delta_roll, phi_dot, slip = followed[:, np.argsort(order)]
-    return phi0 + delta_phi, phi_dot, u0 + radius * delta_roll, radius * (phi_dot + slip)
+def solve(scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float) -> DampedMotion:
+    """Return the motion of a scene with damping or drag at times [s], none of them negative.
 
-
-def _integrate(rates: Rates, time: np.ndarray, state: np.ndarray, swing_rate: float, corners: np.ndarray) -> np.ndarray:
-    """Return how far phi and roll have turned [rad], phi_dot and w [rad/s] at sorted times, of shape (4, times).
-
-    The `state` is phi, phi_dot and w at time 0; a row of `corners` is a sum of phi_dot and w with an absolute value.
+    Raises:
+      ToleranceError: as `exact`.
     """
-    now, latest, deltas, largest = 0.0, float(time[-1]), np.zeros(2), np.ones(2)
-    done = int(np.searchsorted(time, 0.0, "right"))
-    samples = np.repeat(np.array([[0.0, 0.0, *state[1:]]]).T, len(time), axis=1)
-    # What rounding of start and scene does to phi, phi_dot, w and roll: an angle of 0 stands for that of the incline.
-    sensitivity = ROUNDINGS * np.array([abs(state[0]) + 1, *np.abs(state[1:]), 0.0])
-    values, jacobian = rates(*state)
-    fastest = abs(jacobian[1, 2]) + abs(jacobian[0, 1]) + abs(state[1]) + swing_rate + math.sqrt(np.abs(values).sum())
-    length = 1 / fastest if fastest > 0 else latest  # short beside every time that the motion has
-    work = 0
-    while now < latest:
-        length, scale = min(length, latest - now), max(swing_rate, abs(state[1])) + np.finfo(float).tiny
-        if work >= _WORK or now + length == now:
-            raise ToleranceError(
-                f"the motion takes too many steps: it is too fast, or too long, to be followed until {latest:.6g} s; "
-                f"it can be followed until {0.99 * now:.3g} s"
-            )
-        used, solved = _solve_stages(rates, state, length, scale, sensitivity)
-        work += used
-        if solved is None:
-            length /= 4
-            continue
-        stages, changes = solved
-        nodes = np.vstack([state[1:], stages.T])
-        if (corner := _share_to_corner(nodes, corners)) is not None:
-            length *= corner
-            continue
-        series = _TO_SERIES @ nodes
-        sizes = (np.abs(series[:-1]) / np.maximum(scale, np.abs(stages).max(axis=1))).max(axis=1)
-        needed = 1 + int(np.max(np.flatnonzero(sizes > 1e-14), initial=0))
-        if needed == _STAGES:
-            length /= 2
-            continue
-        angles, then = length * _INTEGRALS @ np.array([stages[0], stages.sum(axis=0)]).T, now + length
-        until = int(np.searchsorted(time, then, "right"))
-        if until > done:
-            x = 2 * (time[done:until] - now) / length - 1
-            samples[:, done:until] = (legendre.legvander(x, _STAGES) @ np.hstack([angles, series])).T
-            samples[:2, done:until] += deltas[:, np.newaxis]
-        sensitivity[[0, 3]] += length * _MATRIX[-1] @ np.array([changes[0], changes.sum(axis=0)]).T
-        step_angles = angles.sum(axis=0)
-        deltas, state = deltas + step_angles, np.array([reduced(state[0] + step_angles[0]), *stages[:, -1]])
-        sensitivity[1:3] = changes[:, -1]
-        sensitivity[:3] += np.copysign(ROUNDINGS * np.abs(state), sensitivity[:3])
-        largest = np.maximum(largest, np.abs(deltas))
-        effect = float((np.abs(sensitivity[[0, 3]]) / largest).max())
+    radius = scene.can.radius
+    u0, u_dot0 = scene.start(phi0, phi_dot0)
+    if scene.incline == 0 and Launch.of(scene.oscillator, phi0, phi_dot0).stays:
+        zeros = np.zeros_like(time)
+        return DampedMotion(phi0 + zeros, zeros, u0 + zeros, zeros)
+    order = np.argsort(time)
+    initial_state = np.array([reduced(phi0), phi_dot0, u_dot0 / radius - phi_dot0])
+    samples = _integrate(Equations(scene), time[order], initial_state)
+    delta_phi, delta_roll, phi_dot, slip_rate = samples[:, np.argsort(order)]
+    return DampedMotion(
+        phi=phi0 + delta_phi,
+        phi_dot=phi_dot,
+        u=u0 + radius * delta_roll,
+        u_dot=radius * (phi_dot + slip_rate),
+    )
+
+
+# The equations and their derivatives
+
+
+class Rates(NamedTuple):
+    """phi_ddot and w_dot in a state, or in several at once."""
+
+    values: np.ndarray  # phi_ddot and w_dot [rad/s^2], of shape (2, ...)
+    jacobian: np.ndarray  # their derivatives by phi, phi_dot and w, of shape (2, 3, ...)
+
+
+class Equations:
+    """The equations of a scene."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.swing_rate = math.sqrt(scene.oscillator.depth / scene.oscillator.base)
+        """Frequency of the load's swings [rad/s], about."""
+        corners = []
+        if scene.damping_law.quadratic > 0:
+            corners.append([0.0, 1.0])  # w
+        if scene.drag > 0:
+            corners.append([1.0, 1.0])  # roll_dot
+        self.corners = np.reshape(corners, (-1, 2))
+        """A row for each rate with a corner where it is 0: the factors of phi_dot and w in it."""
+        self._scene = scene
+        self._unit = scene.effective_mass * scene.can.radius**2  # M_e a^2
+        self._beta = scene.load.moment / scene.effective_mass / scene.can.radius
+        self._kappa = scene.drag * scene.can.radius / scene.effective_mass
+        self._delta = scene.oscillator.depth / self._unit
+
+    def rates(self, phi: np.ndarray, phi_dot: np.ndarray, slip_rate: np.ndarray) -> Rates:
+        """Return phi_ddot and w_dot [rad/s^2], and their derivatives by phi, phi_dot and w.
+
+        With c = beta cos(phi) and s = beta sin(phi) the equations are
+
+            j phi_ddot = -delta sin(phi - bottom) - s c phi_dot^2 + tau - c braking,
+            roll_ddot = drive - s phi_dot^2 + c phi_ddot - braking.
+
+        J is constant but for (m b sin(phi))^2/M_e, so that j is constant but for s^2. With the
+        names `tau_by_w` for the derivative of tau and `drag_by_roll_dot` = 2 kappa |roll_dot| for
+        that of kappa roll_dot |roll_dot|, where roll_dot = phi_dot + w, the derivatives are
+
+            of           c    s    j        tau         braking
+            by phi      -s    c    2 s c    0           0
+            by phi_dot   0    0    0        0           drag_by_roll_dot
+            by w         0    0    0        tau_by_w    tau_by_w + drag_by_roll_dot
+
+        The product rule on the first equation gives
+
+            j phi_ddot_by_phi + 2 s c phi_ddot
+                = -delta cos(phi - bottom) - (c^2 - s^2) phi_dot^2 + s braking,
+            j phi_ddot_by_phi_dot = -2 s c phi_dot - c drag_by_roll_dot,
+            j phi_ddot_by_w = tau_by_w - c (tau_by_w + drag_by_roll_dot).
+
+        From the second one, w_dot = roll_ddot - phi_ddot is
+
+            w_dot = drive - s phi_dot^2 - braking - (1 - c) phi_ddot,
+
+        and has the derivatives
+
+            w_dot_by_phi = -c phi_dot^2 - s phi_ddot - (1 - c) phi_ddot_by_phi,
+            w_dot_by_phi_dot = -2 s phi_dot - drag_by_roll_dot - (1 - c) phi_ddot_by_phi_dot,
+            w_dot_by_w = -tau_by_w - drag_by_roll_dot - (1 - c) phi_ddot_by_w.
+        """
+        scene = self._scene
+        oscillator = scene.oscillator
+        radius = scene.can.radius
+        j = oscillator.inertia(phi) / self._unit
+        c = self._beta * np.cos(phi)
+        s = self._beta * np.sin(phi)
+        gap = 1 - c
+        square = phi_dot * phi_dot
+        roll_dot = phi_dot + slip_rate
+        u_ddot, phi_ddot = accelerations(scene, phi, phi_dot, radius * roll_dot, slip_rate)
+        w_dot = u_ddot / radius - phi_ddot
+
+        tau_by_w = scene.damping_law.derivative(slip_rate) / self._unit
+        drag_by_roll_dot = 2 * self._kappa * np.abs(roll_dot)
+        tau = scene.damping_law.torque(slip_rate) / self._unit
+        braking = tau + drag_by_roll_dot * roll_dot / 2
+
+        right_by_phi = -self._delta * np.cos(phi - oscillator.bottom)
+        right_by_phi += s * braking - (c * c - s * s) * square
+        j_by_phi = 2 * s * c
+        phi_ddot_by_phi = (right_by_phi - j_by_phi * phi_ddot) / j
+        phi_ddot_by_phi_dot = (-j_by_phi * phi_dot - c * drag_by_roll_dot) / j
+        phi_ddot_by_w = (gap * tau_by_w - c * drag_by_roll_dot) / j
+
+        w_dot_by_phi = -c * square - s * phi_ddot - gap * phi_ddot_by_phi
+        w_dot_by_phi_dot = -2 * s * phi_dot - drag_by_roll_dot - gap * phi_ddot_by_phi_dot
+        w_dot_by_w = -tau_by_w - drag_by_roll_dot - gap * phi_ddot_by_w
+        return Rates(
+            np.array([phi_ddot, w_dot]),
+            np.array(
+                [
+                    [phi_ddot_by_phi, phi_ddot_by_phi_dot, phi_ddot_by_w],
+                    [w_dot_by_phi, w_dot_by_phi_dot, w_dot_by_w],
+                ]
+            ),
+        )
+
+
+# Polynomials on a step, in x = -1 to 1
+
+
+_RADAU_POINTS = np.sort(legendre.legroots([0.0] * (_STAGES - 1) + [-1.0, 1.0]).real)
+"""The stages: the roots of P_s - P_(s-1), the last of which is 1."""
+_NODES = np.array([-1.0, *_RADAU_POINTS[:-1], 1.0])
+"""The start and the stages of a step."""
+_TO_SERIES = np.linalg.inv(legendre.legvander(_NODES, _STAGES))
+"""This matrix, times values at the start and the stages, gives the Legendre series through them."""
+_STAGES_TO_SERIES = np.linalg.inv(legendre.legvander(_NODES[1:], _STAGES - 1))
+"""This one takes the values at the stages alone."""
+_TO_INTEGRAL = legendre.legint(_STAGES_TO_SERIES, lbnd=-1) / 2
+"""This one gives the series of their integral from the start on, if the step has the length 1."""
+_MATRIX = legendre.legvander(_NODES[1:], _STAGES) @ _TO_INTEGRAL
+"""This one gives that integral at the stages: the a_ij of the method."""
+
+
+class Stages(NamedTuple):
+    """What is known at the stages of a step that was solved."""
+
+    rates: np.ndarray  # phi_dot and w [rad/s], of shape (2, stages)
+    errors: np.ndarray  # by how much errors of the start change them, of the same shape
+
+
+class Step(NamedTuple):
+    """A step that was solved, as Legendre series over its length."""
+
+    length: float  # [s]
+    stages: Stages
+    rates: np.ndarray  # the series of phi_dot and w, of shape (1 + stages, 2)
+    angles: np.ndarray  # those of the angles by which phi and roll turn, of the same shape
+
+    def sample(self, since: np.ndarray) -> np.ndarray:
+        """Return how far phi and roll turn [rad], phi_dot and w [rad/s] at times [s] within it."""
+        basis = legendre.legvander(2 * since / self.length - 1, _STAGES)
+        return (basis @ np.hstack([self.angles, self.rates])).T
+
+
+class Trial(NamedTuple):
+    """What has come of trying a step."""
+
+    corrections: int  # of Newton's method
+    next_length: float  # to try next [s]
+    step: Step | None  # None if the step must be shorter
+
+
+# From step to step
+
+
+@dataclass
+class Progress:
+    """How far a motion has been followed."""
+
+    state: np.ndarray
+    """phi less whole turns [rad], phi_dot and w [rad/s]."""
+    errors: np.ndarray
+    """By how much rounding may have changed phi, phi_dot, w and roll."""
+    time: float = 0.0
+    """Time since the start of the motion [s]."""
+    turned: np.ndarray = field(default_factory=lambda: np.zeros(2))
+    """How far phi and roll have turned since then [rad]."""
+    farthest: np.ndarray = field(default_factory=lambda: np.ones(2))
+    """How far each has been from the start [rad], at least 1."""
+
+    def advance(self, step: Step) -> None:
+        """Go on to the end of a step.
+
+        Raises:
+          ToleranceError: if rounding may have changed phi or roll too much by then.
+        """
+        phi_dot_errors, slip_errors = step.stages.errors
+        roll_dot_errors = phi_dot_errors + slip_errors
+        # The last row of the matrix integrates up to the end of the step.
+        turned_errors = step.length * _MATRIX[-1] @ np.array([phi_dot_errors, roll_dot_errors]).T
+        self.errors[[0, 3]] += turned_errors
+        self.errors[1:3] = step.stages.errors[:, -1]
+        angles = step.angles.sum(axis=0)  # at the end, where each P_k is 1
+        self.state = np.array([reduced(self.state[0] + angles[0]), *step.stages.rates[:, -1]])
+        self.errors[:3] += np.copysign(ROUNDINGS * np.abs(self.state), self.errors[:3])
+        self.time += step.length
+        self.turned = self.turned + angles
+        self.farthest = np.maximum(self.farthest, np.abs(self.turned))
+        effect = float((np.abs(self.errors[[0, 3]]) / self.farthest).max())
         if not effect <= UNCERTAIN:
             raise ToleranceError(
-                f"phi is not known later than at {then:.6g} s: rounding of start and scene changes it by {effect:.2g} "
-                f"rad (relative beyond 1 rad), where at most {UNCERTAIN:g} is allowed"
+                f"phi is not known later than at {self.time:.6g} s: rounding of start and scene "
+                f"changes it by {effect:.2g} rad (relative beyond 1 rad), where at most "
+                f"{UNCERTAIN:g} is allowed"
             )
-        now, done, length = then, until, length * min(10.0, 0.95 * _STAGES / needed)
+
+
+def _integrate(equations: Equations, times: np.ndarray, state: np.ndarray) -> np.ndarray:
+    """Return how far phi and roll have turned [rad], phi_dot and w [rad/s] at sorted times.
+
+    The result has shape (4, times). The `state` is phi, phi_dot and w at time 0.
+    """
+    latest = float(times[-1])
+    samples = np.empty((4, len(times)))
+    sampled = int(np.searchsorted(times, 0.0, "right"))
+    samples[:, :sampled] = np.array([[0.0, 0.0, *state[1:]]]).T
+    # The rounding of the scene, of its incline for one, counts as that of an angle of 1 rad.
+    errors = ROUNDINGS * np.array([abs(state[0]) + 1, *np.abs(state[1:]), 0.0])
+    progress = Progress(state, errors)
+    corrections = 0
+    length = _first_length(equations, state, latest)
+    while progress.time < latest:
+        length = min(length, latest - progress.time)
+        if corrections >= _MOST_CORRECTIONS or progress.time + length == progress.time:
+            raise ToleranceError(
+                "the motion takes too many steps: it is too fast, or too long, to be followed "
+                f"until {latest:.6g} s; it can be followed until {0.99 * progress.time:.3g} s"
+            )
+        trial = _try_step(equations, progress, length)
+        corrections += trial.corrections
+        length = trial.next_length
+        if trial.step is None:
+            continue
+        end = progress.time + trial.step.length
+        until = int(np.searchsorted(times, end, "right"))
+        if until > sampled:
+            samples[:, sampled:until] = trial.step.sample(times[sampled:until] - progress.time)
+            samples[:2, sampled:until] += progress.turned[:, np.newaxis]
+            sampled = until
+        progress.advance(trial.step)
     return samples
 
 
+def _first_length(equations: Equations, state: np.ndarray, latest: float) -> float:
+    """Return the length [s] of the first step, which is short for anything that may happen."""
+    values, jacobian = equations.rates(*state)
+    fastest = abs(jacobian[1, 2]) + abs(jacobian[0, 1]) + abs(state[1])
+    fastest += equations.swing_rate + math.sqrt(np.abs(values).sum())
+    return 1 / fastest if fastest > 0 else latest
+
+
+def _try_step(equations: Equations, progress: Progress, length: float) -> Trial:
+    """Try a step of a `length` [s]: it must be solved to rounding, and may pass no corner."""
+    state = progress.state
+    # Errors of a rate are relative to the rate, or to this where the rate is smaller.
+    scale = max(equations.swing_rate, abs(state[1])) + np.finfo(float).tiny
+    corrections, stages = _solve_stages(equations, state, progress.errors, length, scale)
+    if stages is None:
+        return Trial(corrections, length / 4, None)
+    nodes = np.vstack([state[1:], stages.rates.T])
+    share = _share_to_corner(nodes, equations.corners)
+    if share is not None:
+        return Trial(corrections, share * length, None)
+    series = _TO_SERIES @ nodes
+    largest = np.maximum(scale, np.abs(stages.rates).max(axis=1))
+    sizes = (np.abs(series[:-1]) / largest).max(axis=1)
+    # So many coefficients are more than rounding; the last one that is looked at must not be.
+    needed = 1 + int(np.max(np.flatnonzero(sizes > 1e-14), initial=0))
+    if needed == _STAGES:
+        return Trial(corrections, length / 2, None)
+    phi_dot, slip_rate = stages.rates
+    angles = length * _TO_INTEGRAL @ np.array([phi_dot, phi_dot + slip_rate]).T
+    step = Step(length, stages, series, angles)
+    return Trial(corrections, length * min(10.0, 0.95 * _STAGES / needed), step)
+
+
 def _share_to_corner(nodes: np.ndarray, corners: np.ndarray) -> float | None:
-    """Return the share of a step, with phi_dot and w at its `nodes`, at which the first corner is passed, if one is."""
-    sums, shares = nodes @ corners.T, []
-    # The polynomial through the stages is off by up to 72 eps in trials: each processor sums in another order.
-    signs = np.where(np.abs(sums) > 256 * EPS * np.abs(nodes).sum(axis=1).max(), np.sign(sums), 0.0)
-    for sign, series in zip(signs.T, (_TO_SERIES @ sums).T, strict=True):
+    """Return the share of a step at which the first corner is passed, or None if none is.
+
+    `nodes` are phi_dot and w at the start and the stages, of shape (1 + stages, 2); `corners` are
+    those of `Equations`.
+    """
+    shares = []
+    rates = nodes @ corners.T
+    # A rate smaller than this has no sign. In trials the rounding of the polynomial was up to
+    # 72 eps, and differed between processors, which add in different orders.
+    noise = 256 * EPS * np.abs(nodes).sum(axis=1).max()
+    signs = np.where(np.abs(rates) > noise, np.sign(rates), 0.0)
+    for sign, series in zip(signs.T, (_TO_SERIES @ rates).T, strict=True):
         for low, high in itertools.pairwise(np.flatnonzero(sign)):
             if sign[low] != sign[high]:
-                towards = sign[high] * series
-                shares.append((1 + root(lambda x, c=towards: legendre.legval(x, c), _NODES[low], _NODES[high])) / 2)
-    # A corner that near an end may stay: the torque beside it is the square of that, or less.
+                rising = sign[high] * series
+                x = root(lambda x, c=rising: legendre.legval(x, c), _NODES[low], _NODES[high])
+                shares.append((1 + x) / 2)
+    # A corner nearer than this to an end may stay inside: the torque beside it is the square of
+    # that share, or less.
     return min((share for share in shares if 1e-6 < share < 1 - 1e-6), default=None)
 
 
 def _solve_stages(
-    rates: Rates, state: np.ndarray, length: float, scale: float, sensitivity: np.ndarray
-) -> tuple[int, tuple[np.ndarray, np.ndarray] | None]:
-    """Return the number of corrections, phi_dot and w at the stages of a step, and their changes by the `sensitivity`.
+    equations: Equations,
+    state: np.ndarray,
+    errors: np.ndarray,
+    length: float,
+    scale: float,
+) -> tuple[int, Stages | None]:
+    """Return the number of corrections, and the stages of a step, or None if Newton's method fails.
 
-    Newton's method solves for all stages at once, and may fail: None. Errors are relative to `scale` [rad/s] at least.
+    The unknowns are y_i = (phi_dot_i, w_i) at all stages i. With f = (phi_ddot, w_dot), h for the
+    `length` and the index 0 for the start, they obey
+
+        y_i = y_0 + h sum_j a_ij f(phi_j, y_j),    phi_j = phi_0 + h sum_k a_jk phi_dot_k.
+
+    f_j = f(phi_j, y_j) depends on phi_dot_j and w_j directly, and through phi_j on all phi_dot_k.
+    Hence the right side for y_i has the derivatives
+
+        by phi_dot_k:  h a_ik df_k/d(phi_dot) + h sum_j a_ij df_j/d(phi) h a_jk,
+        by w_k:        h a_ik df_k/d(w).
+
+    Let G be the matrix of these derivatives. A correction of Newton's method changes the y_i by the
+    solution of
+
+        (1 - G) change = right side - y.
+
+    If phi_0 and y_0 have `errors`, those of the y_i solve equations with the same matrix,
+
+        (1 - G) error = error of y_0 + h sum_j a_ij df_j/d(phi) (error of phi_0).
+
+    A change of a rate is relative to its largest size, or to `scale` [rad/s] if that is larger.
     """
-    s, reach, begin, last = _STAGES, length * _MATRIX, state[1:, np.newaxis], math.inf
-    stages, matrix, sides = np.repeat(begin, s, axis=1), np.empty((2 * s, 2 * s)), np.empty((2, s, 2))
-    for used in range(1, 13):
-        values, jacobian = rates(state[0] + reach @ stages[0], *stages)
-        through_phi = (reach * jacobian[:, :1]) @ reach
-        matrix[:s, :s] = reach * jacobian[0, 1] + through_phi[0]
-        matrix[:s, s:] = reach * jacobian[0, 2]
-        matrix[s:, :s] = reach * jacobian[1, 1] + through_phi[1]
-        matrix[s:, s:] = reach * jacobian[1, 2]
+    reach = length * _MATRIX  # h a_ij
+    begin = state[1:, np.newaxis]
+    stages = np.repeat(begin, _STAGES, axis=1)
+    unknowns = 2 * _STAGES  # phi_dot at all stages, and then w
+    identity = np.eye(unknowns)
+    derivatives = np.empty((unknowns, unknowns))  # G
+    sides = np.empty((2, _STAGES, 2))  # the right sides for the changes and for the errors
+    last_size = math.inf
+    for corrections in range(1, 13):
+        values, jacobian = equations.rates(state[0] + reach @ stages[0], *stages)
+        for rate in range(2):  # phi_ddot, and then w_dot
+            by_phi, by_phi_dot, by_w = jacobian[rate]
+            rows = slice(rate * _STAGES, (rate + 1) * _STAGES)
+            derivatives[rows, :_STAGES] = reach * by_phi_dot + (reach * by_phi) @ reach
+            derivatives[rows, _STAGES:] = reach * by_w
         sides[..., 0] = begin + values @ reach.T - stages
-        sides[..., 1] = sensitivity[0] * jacobian[:, 0] @ reach.T + sensitivity[1:3, np.newaxis]
+        sides[..., 1] = errors[0] * jacobian[:, 0] @ reach.T + errors[1:3, np.newaxis]
         try:
-            solved = np.linalg.solve(np.eye(2 * s) - matrix, sides.reshape(2 * s, 2)).reshape(2, s, 2)
+            solved = np.linalg.solve(identity - derivatives, sides.reshape(unknowns, 2))
         except np.linalg.LinAlgError:
-            return used, None
-        change, changes = solved[..., 0], solved[..., 1]
+            return corrections, None
+        change = solved[:, 0].reshape(stages.shape)
         stages = stages + change
-        size = float((np.abs(change).max(axis=1) / np.maximum(scale, np.abs(stages).max(axis=1))).max())
-        if last < 1e-9:  # each correction squares the error, and the last one left rounding
-            return used, (stages, changes)
+        largest = np.maximum(scale, np.abs(stages).max(axis=1))
+        size = float((np.abs(change).max(axis=1) / largest).max())
+        if last_size < 1e-9:  # each correction squares the error, and this one left rounding
+            return corrections, Stages(stages, solved[:, 1].reshape(stages.shape))
         if not size < 1e6:
-            return used, None
-        last = size
-    return used, None
+            return corrections, None
+        last_size = size
+    return corrections, None

@@ -13,7 +13,7 @@ eliminated). J never cancels, as its coefficients are not negative, and `Potenti
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -111,15 +111,17 @@ class Oscillator:
             bottom=-incline,
         )
 
-    @property
-    def sign(self) -> int:
-        """Return -1 if the ramp falls with -phi, so that the motion is watched in a mirror, else 1."""
-        return -1 if self.ramp < 0 else 1
+    @cached_property
+    def mirrored(self) -> "Oscillator":
+        """Return the oscillator that moves as this one does in a mirror, where phi has the opposite sign."""
+        return replace(self, bottom=-self.bottom, ramp=-self.ramp)
 
     @cached_property
     def potential(self) -> Potential:
-        """Return the shape of V about its crest, in the mirror if `sign` is -1."""
-        return Potential(abs(self.ramp), self.depth, self.sign * self.bottom)
+        """Return the shape of V about its crest; if the ramp is negative, that of the mirrored oscillator."""
+        if self.ramp < 0:
+            return self.mirrored.potential
+        return Potential(self.ramp, self.depth, self.bottom)
 
     def inertia(self, phi: np.ndarray | float) -> np.ndarray:
         """Return J [kg m^2] at `phi` [rad]."""
@@ -155,7 +157,8 @@ class Oscillator:
                 "nothing restores the load: it is balanced about the axis (offset 0 m) or gravity is 0 m/s^2, "
                 "so no angle is a stable equilibrium"
             )
-        return self.sign * self.potential.rest
+        rest = self.potential.rest
+        return -rest if self.ramp < 0 else rest
 
     def frequency(self) -> float:
         """Return the angular frequency of small oscillations [rad/s], sqrt(V''/J) at equilibrium: eqs. (10), (55)."""
@@ -167,7 +170,7 @@ class Oscillator:
         barrier = float(potential.below(-potential.well))  # above the equilibrium, as V is at an angle behind it
         behind = root(lambda angle: potential.below(angle) - barrier, 0, math.tau - potential.well)
         low, high = potential.rest - behind, math.pi + potential.crest_past_pi
-        return (low, high) if self.sign > 0 else (-high, -low)
+        return (-high, -low) if self.ramp < 0 else (low, high)
 
 
 def _past_pi(angle: float) -> float:
