@@ -23,7 +23,7 @@ from mjbeer.integrators.gauss_jackson.method import BLOCK
 from mjbeer.integrators.gauss_jackson.weights import COUNT, LAG, POSITION, VELOCITY, weights
 from mjbeer.model.build import build
 from mjbeer.model.joints import initial_state, to_coordinates
-from mjbeer.simulation import tolerance
+from mjbeer.simulation import methods
 from mjbeer.simulation.methods import swing_law
 from mjbeer.simulation.smooth_recorder import SmoothRecorder
 from mjbeer.theory import trajectory
@@ -239,7 +239,7 @@ def test_damping_is_refused(scene: Scene) -> None:
 
 def test_a_tolerance_falls_back_on_dop853(monkeypatch: pytest.MonkeyPatch) -> None:
     """Where runs stay too far apart."""
-    monkeypatch.setattr(tolerance, "_TRIES", 0)
+    monkeypatch.setattr(methods, "_FINER_RUNS", 1)
     run = simulate(frozen(), 2.0, 1.0, tolerance=1e-8)
     assert run.integrator == "DOP853"
     assert np.abs(run.phi - exact(run.scene, run.time, 1.0).phi).max() < 1e-8

@@ -1,7 +1,6 @@
 """tolerance: the true error is below it at every sample, the estimate bounds it, and what cannot be met is an error."""
 
 import contextlib
-import itertools
 import math
 from collections.abc import Callable
 from dataclasses import replace
@@ -310,8 +309,8 @@ def test_a_rotation_is_stepped_through_again_with_shorter_steps(monkeypatch: pyt
 
     monkeypatch.setattr(DOP853, "run", noted)
     simulate(frozen(can=METAL), 1.0, 1.0, 100.0, rolling="equality", tolerance=1e-3, times=[1.0])
-    assert len(runs) >= 2
-    assert all(later <= earlier / 1.2 for earlier, later in itertools.pairwise(runs))
+    coarse, fine, *_ = runs
+    assert fine <= coarse / 1.2
 
 
 @pytest.mark.parametrize("scene", [sliding(), frozen()])

@@ -166,16 +166,17 @@ class Dynamics:
           DivergenceError: if the motion stops being finite, no step is small enough, or there are too many evaluations.
         """
         status = MORE
+        time = 0.0
         while status == MORE:
+            if self.evaluations > self.most_evaluations:
+                raise DivergenceError(
+                    f"the {name} run was given up at t = {time:.6g} s after {self.evaluations} evaluations"
+                )
             with nullcontext() if kernel.overloads else announced():
                 status, time, evaluations, rows, place = kernel(*arguments, ends, place)
             self.evaluations += evaluations
             if observer and rows:
                 observer(ends.times[:rows], ends.states[:rows])
-            if status == MORE and self.evaluations > self.most_evaluations:
-                raise DivergenceError(
-                    f"the {name} run was given up at t = {time:.6g} s after {self.evaluations} evaluations"
-                )
         if status == NOT_FINITE:
             raise DivergenceError(f"the {name} run diverged at t = {time:.6g} s: its state is no longer finite")
         if status == STEP_TOO_SMALL:
