@@ -25,9 +25,9 @@ from mjbeer.model.build import build
 from mjbeer.model.joints import initial_state, to_coordinates
 from mjbeer.simulation import tolerance
 from mjbeer.simulation.smooth_recorder import SmoothRecorder
-from mjbeer.simulation.tolerance import swing_law
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import distance
+from tests.support.integrators import swing_law
 from tests.support.scenes import METAL
 
 

@@ -12,7 +12,7 @@ from mjbeer.model.build import build
 from mjbeer.model.joints import initial_state
 from mjbeer.simulation.fixed_step import Recorder
 from mjbeer.simulation.smooth_recorder import _NAMES, SmoothRecorder
-from mjbeer.simulation.tolerance import swing_law
+from tests.support.integrators import swing_law
 from tests.support.scenes import METAL
 
 

@@ -1,7 +1,6 @@
 """MuJoCo's accelerations in compiled code, and the loop that calls a method's kernel until a run is done."""
 
 import math
-from collections.abc import Callable
 from contextlib import nullcontext
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -152,12 +151,12 @@ class Dynamics:
     def run_blocks(
         self,
         name: str,
-        kernel: Callable[..., Any],
+        kernel: Any,
         arguments: tuple,
-        place: tuple,
+        place: Any,
         ends: Steps,
         observer: Observer | None,
-    ) -> tuple:
+    ) -> Any:
         """Call a method's kernel, a block of steps each, until its run is done; return its last place.
 
         The kernel takes the `arguments`, the `ends` of steps to write for the observer, and the place where the block
