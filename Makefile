@@ -51,6 +51,7 @@ portability: $(TOOLS)
 renders: $(PACKAGE)
 	$(BIN)/python docs/figures/renders.py renders
 	$(BIN)/python docs/figures/carry.py
+	$(BIN)/python docs/figures/gauss_jackson.py
 
 templates: $(PACKAGE)
 	$(BIN)/python tools/templates.py mjcf

@@ -40,7 +40,8 @@ from mjbeer.theory.scene import frozen
 
 CHECKOUT = pathlib.Path(__file__).parents[1]
 sys.path[:0] = [str(CHECKOUT), str(CHECKOUT / "docs" / "figures")]
-import real_beer  # noqa: E402 - beside the figures that it draws
+import gauss_jackson as gauss_jackson_figure  # noqa: E402 - beside the figures that it draws
+import real_beer  # noqa: E402
 
 from tests.support import rows  # noqa: E402
 
@@ -107,6 +108,12 @@ def holds() -> str:
         ],
         left=(0, 1),
     )
+
+
+def gauss_jackson() -> str:
+    """How many times more evaluations DOP853 takes than Gauss-Jackson."""
+    columns = ("", *(f"to {error:g} rad" for error in gauss_jackson_figure.ERRORS))
+    return table(columns, gauss_jackson_figure.rows())
 
 
 def misprints() -> str:
@@ -337,7 +344,7 @@ _OF_THE_BENCHMARK = cheapest, others, whole_calls, ranges, measured
 _OF_STABILITY = steps, agreement, damped, damped_runs, kinds, honesty
 MADE = {
     each.__name__.replace("_", "-"): each
-    for each in (holds, misprints, *_OF_THE_BENCHMARK, *_OF_STABILITY, speeds, metre)
+    for each in (holds, misprints, gauss_jackson, *_OF_THE_BENCHMARK, *_OF_STABILITY, speeds, metre)
 }
 
 if __name__ == "__main__":

@@ -153,7 +153,7 @@ class Dynamics:
         name: str,
         kernel: Any,
         arguments: tuple,
-        place: tuple,
+        place: Any,
         ends: Steps,
         observer: Observer | None,
     ) -> Any:
