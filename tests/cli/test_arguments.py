@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mjbeer import Can, build, render, simulate
+from mjbeer import Can, build, frozen, render, simulate
 from mjbeer.cli.app import OF_SCENES, main, parse
 from mjbeer.cli.arguments import SCENES, angle, angles, numbers, of_scene, scene, start, steps
 from mjbeer.model.export import export
@@ -71,8 +71,13 @@ def test_the_options_of_the_run_arrive() -> None:
 def test_the_defaults_are_those_of_python(words: str, meant: object) -> None:
     given = parse(words.split())
     for name, parameter in inspect.signature(meant).parameters.items():
-        if hasattr(given, name) and name not in ("scene", "phi0", "output"):
+        if hasattr(given, name) and name not in ("scene", "phi0", "output", "duration"):
             assert getattr(given, name) in (parameter.default, None), name  # which is left to Python's default
+
+
+def test_the_default_duration_is_that_of_python() -> None:
+    """In Python it may follow from the times of the samples, too."""
+    assert parse(["simulate", "frozen"]).duration == simulate(frozen(), phi0=1.0).time[-1]
 
 
 def test_a_range_a_list_or_a_number() -> None:

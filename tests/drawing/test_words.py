@@ -72,7 +72,7 @@ def test_a_video_is_written_or_shown(tmp_path: pathlib.Path, monkeypatch: pytest
 
 def test_a_run_is_one_line_and_does_not_run_again(monkeypatch: pytest.MonkeyPatch) -> None:
     run = simulate(frozen(), 0.5, 1.0, rolling="contact")
-    monkeypatch.setattr("mjbeer.simulation.simulate.compare_uneven", lambda _: pytest.fail("a second run"))
+    monkeypatch.setattr("mjbeer.simulation.second_run.compare_uneven", lambda _: pytest.fail("a second run"))
     assert repr(run) == (
         f"<Run frozen, contact, RK4: 501 samples to t = 0.5 s, phi = {run.phi[-1]:.6g} rad, u = {run.u[-1]:.6g} m>"
     )

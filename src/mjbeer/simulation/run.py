@@ -74,16 +74,16 @@ class Run(Trajectory):
         """Return the estimated global error of phi and u/a [rad], relative to the angle where that exceeds 1 rad.
 
         It rests on the largest distance from a second run. Without a tolerance the first access makes that run, which
-        takes up to three times as long as this one; the error is infinite if it diverges. In a contact the slip and the
-        depth of the can, both in radii, are added: a can that has slid is elsewhere by as much, and one that has sunk
-        in rolls on a smaller radius. A start beyond half a turn adds the rounding of its whole turns.
+        takes up to three times as long as this one; the error is infinite if it diverges. While a can in contact rolls,
+        its slip and its depth, both in radii, are added: a can that has slid is elsewhere by as much, and one that has
+        sunk in rolls on a smaller radius. A start beyond half a turn adds the rounding of its whole turns.
         """
         error = self.error
         if error is None:
             from mjbeer.simulation.second_run import compare_uneven
 
             error = compare_uneven(self)
-        if self.rolling == "contact":
+        if self.rolling == "contact" and not self.rolling_warnings:
             error += (self.record.slip + self.record.lift) / self.scene.can.radius
         return error + turns_rounding(self.phi0)
 

@@ -82,34 +82,31 @@ def solve_to_tolerance(
     stride = math.ceil(len(problem.times) / COMPARED)
     compared = slice((len(problem.times) - 1) % stride, None, stride)  # with the last one
     some_times = np.ascontiguousarray(problem.times[compared])
-    coarse_method: Method | None = None
-    coarse = np.empty(0)
     apart = math.inf
     try:
-        for method in methods:
-            if coarse_method is None:
-                coarse = method.run(problem.start, some_times)
-            else:
-                recorder = make_recorder()
-                states = method.run(problem.start, problem.times, recorder)
-                fine = states[compared]
-                record = recorder.record
-                apart = SAFETY * largest_distance(problem, coarse, fine)
-                error = max(apart, DRIFT * record.swing_error, record.axis_error)
-                if error <= tolerance:
-                    aside = coarse_method.run(problem.nudged_start, some_times)
-                    rounding = ROUNDING * largest_distance(problem, coarse, aside)
-                    if rounding > tolerance:
-                        raise not_reached(tolerance, f"the rounding of the start grows to {rounding:.2g} rad")
-                    return Solution(states, record, max(error, rounding), method.name)
-                coarse = fine
+        finer_methods = iter(methods)
+        coarse_method = next(finer_methods)
+        coarse = coarse_method.run(problem.start, some_times)
+        for method in finer_methods:
+            recorder = make_recorder()
+            states = method.run(problem.start, problem.times, recorder)
+            record = recorder.record
+            apart = largest_distance(problem, coarse, states[compared])
+            error = max(SAFETY * apart, DRIFT * record.swing_error, record.axis_error)
+            if error <= tolerance:
+                aside = coarse_method.run(problem.nudged_start, some_times)
+                rounding = ROUNDING * largest_distance(problem, coarse, aside)
+                if rounding > tolerance:
+                    raise not_reached(tolerance, f"the rounding of the start grows to {rounding:.2g} rad")
+                return Solution(states, record, max(error, rounding), method.name)
             coarse_method = method
+            coarse = states[compared]
     except DivergenceError as failure:
         raise not_reached(tolerance, str(failure)) from failure
     raise not_reached(
         tolerance,
-        f"the finest two runs still differ by {apart / SAFETY:.2g} rad, a tenth of which is asked for; "
-        "the motion is not smooth, or rounding has the upper hand",
+        f"the two finest runs differ by {apart:.2g} rad, where a tenth of the tolerance is allowed: the motion is not "
+        "smooth, or rounding decides",
     )
 
 

@@ -45,7 +45,7 @@ def test_no_run_is_wrong_and_silent() -> None:
 @pytest.mark.parametrize("case", SAMPLE, ids=lambda case: case.name)
 def test_a_sample_of_the_known_cases_ends_as_it_must(case: KnownCase, monkeypatch: pytest.MonkeyPatch) -> None:
     """A motion that no number of steps makes smooth is refused after fewer of them than usually."""
-    monkeypatch.setattr("mjbeer.simulation.tolerance._EVALUATIONS", 500_000)
+    monkeypatch.setattr("mjbeer.simulation.solve.EVALUATIONS", 500_000)
     found = try_case(case)
     assert found["runs"]
     assert [run for run in found["runs"] if not run["as it must"]] == []
