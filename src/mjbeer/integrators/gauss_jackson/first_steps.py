@@ -75,7 +75,7 @@ class FirstSums(NamedTuple):
 
 
 @compiled
-def accelerations(dynamics, sundman, phi, rate):
+def evaluate(dynamics, sundman, phi, rate):
     """Return MuJoCo's `Accelerations` where phi has a `rate` [rad/s] in Sundman time. The slide rests at its origin."""
     last = dynamics.qpos.size - 1
     sin = math.sin(sundman.turns * phi)
@@ -116,9 +116,9 @@ def find_first_steps(dynamics, sundman, start, timestep, history):
                 acceleration = law.constant + law.cosine * math.cos(phi) + law.sine * math.sin(phi)
             else:
                 since = weighted(_VELOCITIES_SINCE, k, history.phi, _ALL)
-                both = accelerations(dynamics, sundman, phi, start.rate + timestep * since)
-                acceleration = both.phi
-                history.steady[k] = both.steady
+                new = evaluate(dynamics, sundman, phi, start.rate + timestep * since)
+                acceleration = new.phi
+                history.steady[k] = new.steady
                 evaluations += 1
             change = max(change, abs(acceleration - history.phi[k]))
             largest = max(largest, abs(acceleration))
