@@ -87,9 +87,9 @@ def sundman_time(
 def _points_for(constant: float, varying: float, turns: float, precision: float, largest_turn: float) -> int:
     """Return the number of points with which Gauss's formula gives a duration to some precision.
 
-    Its error falls by the square of an ellipse's size with each point. The foci of the ellipse are the ends of the step,
-    and the complex angle at which dt/ds vanishes lies on it. Its size is the sum of its half-axes, divided by half the
-    distance of its foci.
+    Its error falls by the square of an ellipse's size with each point. The foci of the ellipse are the ends of the
+    step, and the complex angle at which dt/ds vanishes lies on it. Its size is the sum of its half-axes, divided by
+    half the distance of its foci.
     """
     size = math.log(_LARGEST_ELLIPSE)
     if varying > 0 and largest_turn > 0:
