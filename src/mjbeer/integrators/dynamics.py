@@ -95,7 +95,7 @@ class Dynamics:
             qacc=self.data.qacc_smooth if self._smooth else self.data.qacc,
             used=self._used_positions(),
         )
-        """The same as kernels take it."""
+        """What kernels take of it."""
         self.model_has_changed()
 
     def _used_positions(self) -> np.ndarray:
@@ -112,7 +112,7 @@ class Dynamics:
         return used
 
     def model_has_changed(self) -> None:
-        """Take over new numbers of the model: a smooth one has actuator forces that are computed only here."""
+        """Take over new numbers of the model: only here are the actuator forces of a smooth model computed."""
         vars(self).pop("corners", None)
         if self._smooth and self._actuated:
             mujoco.mj_forward(self.model, self.data)
@@ -160,7 +160,7 @@ class Dynamics:
         """Call a method's kernel, a block of steps each, until its run is done; return its last place.
 
         The kernel takes the `arguments`, the `ends` of steps to write for the observer, and the place where the block
-        begins. It returns a `Block`. A block of ten milliseconds lets the user interrupt a long run.
+        begins. It returns a `Block`. Between two blocks the user can interrupt a run.
 
         Raises:
           DivergenceError: if the motion stops being finite, no step is small enough, or there are too many evaluations.

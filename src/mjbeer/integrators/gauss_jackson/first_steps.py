@@ -26,9 +26,9 @@ MIDDLE = COUNT // 2
 _ITERATIONS = 30
 """Largest number of iterations; a timestep that is not too long takes five to eight."""
 _ROUNDING = 1e-16
-"""Change of the accelerations in an iteration, over the largest of them, which is rounding."""
+"""Largest change of an acceleration in an iteration, as a share of the largest one, that is rounding."""
 _SMALL_CHANGE = 1e-9
-"""The same, below which an iteration that does not improve any more has found them."""
+"""The same, below which iterations that do not improve any more have found the accelerations."""
 _START = row_of(MIDDLE)
 _ALL = np.int64(COUNT)  # no plain number, as for `row_of`
 _OUTWARDS = np.argsort(np.abs(np.arange(COUNT) - MIDDLE), stable=True)
@@ -75,7 +75,7 @@ class FirstSums(NamedTuple):
 
 
 @compiled
-def accelerations(dynamics, sundman, phi, rate):
+def evaluate(dynamics, sundman, phi, rate):
     """Return MuJoCo's `Accelerations` where phi has a `rate` [rad/s] in Sundman time. The slide rests at its origin."""
     last = dynamics.qpos.size - 1
     sin = math.sin(sundman.turns * phi)
@@ -102,38 +102,45 @@ def find_first_steps(dynamics, sundman, start, timestep, history):
     optimize_for_size()
     evaluations = 0
     by_law = True
-    change_before = np.inf
     found = False
+    change_before = np.inf
     for _ in range(_ITERATIONS):
-        change = 0.0
-        largest = 0.0
-        for order in range(COUNT):
-            k = _OUTWARDS[order]
-            since = timestep * weighted(_POSITIONS_SINCE, k, history.phi, _ALL)
-            phi = start.phi + timestep * ((k - MIDDLE) * start.rate + since)
-            if by_law:
-                law = sundman.law
-                acceleration = law.constant + law.cosine * math.cos(phi) + law.sine * math.sin(phi)
-            else:
-                since = weighted(_VELOCITIES_SINCE, k, history.phi, _ALL)
-                both = accelerations(dynamics, sundman, phi, start.rate + timestep * since)
-                acceleration = both.phi
-                history.steady[k] = both.steady
-                evaluations += 1
-            change = max(change, abs(acceleration - history.phi[k]))
-            largest = max(largest, abs(acceleration))
-            history.phi[k] = acceleration
-        no_better = change >= change_before and change <= _SMALL_CHANGE * largest
-        if change <= _ROUNDING * largest or no_better:
+        change = _improve(dynamics, sundman, start, timestep, history, by_law)
+        if not by_law:
+            evaluations += COUNT
+        stalls = change_before <= change <= _SMALL_CHANGE
+        if change <= _ROUNDING or stalls:
             if not by_law:
                 found = True
                 break
             by_law = False
         change_before = change
-    if not by_law and change <= _SMALL_CHANGE * largest:
-        found = True
     # The two formulas of `weights` at the start, solved for the sums.
     first = start.rate / timestep - weighted(VELOCITY_WEIGHTS, _START, history.phi, _ALL)
     place = start.phi / (timestep * timestep)
     second = place + (1 + MIDDLE) * first - weighted(POSITION_WEIGHTS, _START, history.phi, _ALL)
     return FirstSums(evaluations if found else 0, first, second)
+
+
+@compiled
+def _improve(dynamics, sundman, start, timestep, history, by_law):
+    """Improve the first accelerations, by the law or by MuJoCo; return the largest change over the largest of them."""
+    optimize_for_size()
+    change = 0.0
+    largest = 1e-300
+    for order in range(COUNT):
+        k = _OUTWARDS[order]
+        position_since = timestep * weighted(_POSITIONS_SINCE, k, history.phi, _ALL)
+        phi = start.phi + timestep * ((k - MIDDLE) * start.rate + position_since)
+        if by_law:
+            law = sundman.law
+            acceleration = law.constant + law.cosine * math.cos(phi) + law.sine * math.sin(phi)
+        else:
+            rate = start.rate + timestep * weighted(_VELOCITIES_SINCE, k, history.phi, _ALL)
+            new = evaluate(dynamics, sundman, phi, rate)
+            acceleration = new.phi
+            history.steady[k] = new.steady
+        change = max(change, abs(acceleration - history.phi[k]))
+        largest = max(largest, abs(acceleration))
+        history.phi[k] = acceleration
+    return change / largest

@@ -1,13 +1,12 @@
 """The integrator GaussJackson: a multistep method around MuJoCo's forward dynamics, for smooth motions.
 
 A step predicts phi from the sums of all accelerations and the last thirteen of them, evaluates MuJoCo's acceleration
-there, and corrects phi with it. For the little by which phi then changes, the slope of the law that phi nearly obeys
-stands for a second evaluation, without which the method would be unstable at long timesteps. States are read off two
-steps later, with accelerations on both sides, where the formula errs far less.
+there, and corrects phi with it. For the small change from the predicted to the corrected phi, the law that phi nearly
+obeys says how the acceleration changes; without this the method would be unstable. States are read off two steps later,
+with accelerations on both sides, where the formula errs far less.
 
-Steps are even in the Sundman time. The slide of a load in a can that slides along, less a share of sin(phi), is evenly
-accelerated, and is integrated in t. The motion comes from the accelerations of MuJoCo alone: with another law the steps
-must be shorter.
+Steps are even in Sundman time. If the model has a slide, the slide less arm sin(phi) is evenly accelerated, and is
+integrated in t. The motion is that of MuJoCo's accelerations alone: with a wrong law the steps must only be shorter.
 
 O. Montenbruck and E. Gill, Satellite Orbits, section 4.2; M. M. Berry and L. M. Healy, Implementation of Gauss-Jackson
 integration for orbit propagation, J. Astronaut. Sci. 52 (2004), and The generalized Sundman transformation for
@@ -29,17 +28,19 @@ from mjbeer.integrators.dynamics import (
     Block,
     Dynamics,
     Steps,
+    copy,
     room_for_ends,
 )
 from mjbeer.integrators.gauss_jackson.first_steps import (
     MIDDLE,
     History,
-    accelerations,
+    evaluate,
     find_first_steps,
 )
 from mjbeer.integrators.gauss_jackson.step_curve import (
     Node,
     StepCurve,
+    WholeStep,
     end_node,
     find,
     fit,
@@ -83,9 +84,9 @@ class _Place(NamedTuple):
 class GaussJackson:
     """The Gauss-Jackson method with second sums around the forward dynamics of one model.
 
-    The model has the hinge phi, after a slide on which nothing depends, or alone. All steps last a `timestep` [s] in
-    `sundman_time`. A step is one evaluation, where DOP853 has twelve and steps three times as large. A damping or a
-    constraint that decays fast would make it unstable.
+    The model has the hinge phi alone, or after a slide on which no acceleration depends. All steps last a `timestep`
+    [s] in `sundman_time`. A step is one evaluation, where DOP853 has twelve and steps three times as long. A damping or
+    a constraint that decays fast would make the method unstable.
 
     Raises:
       UnsupportedError: if the model has constraints or damping.
@@ -117,8 +118,6 @@ class GaussJackson:
         dynamics.data.qvel[:] = 0.0
         history = History(np.zeros(COUNT + BLOCK), np.zeros(COUNT + BLOCK))
         coefficients = np.empty(COUNT + 2)
-        phi = float(start[len(start) // 2 - 1])
-        pace = dt_ds.py_func(sundman, phi)
         dynamics.run_blocks(
             self.name,
             _advance,
@@ -131,11 +130,19 @@ class GaussJackson:
                 coefficients,
                 samples,
             ),
-            _Place(MIDDLE, at_start, Node(phi, float(start[-1]) * pace, pace)),
+            _Place(MIDDLE, at_start, _node_at(start, sundman)),
             room_for_ends(start, BLOCK + COUNT if observer else 0),
             observer,
         )
         return samples.states
+
+
+def _node_at(start: np.ndarray, sundman: SundmanTime) -> Node:
+    """Return the node at the start of a run."""
+    phi = float(start[len(start) // 2 - 1])
+    phi_dot = float(start[-1])
+    dt_ds_there = dt_ds.py_func(sundman, phi)
+    return Node(phi, phi_dot * dt_ds_there, dt_ds_there)
 
 
 def _totals_at(start: np.ndarray, arm: float) -> _Totals:
@@ -153,9 +160,9 @@ def _totals_at(start: np.ndarray, arm: float) -> _Totals:
 def _advance(dynamics, sundman, timestep, history, totals, coefficients, samples, ends, place):
     """Take up to a block of steps, and return the `Block`.
 
-    `dynamics` is a `ForwardDynamics`. `history` has the last accelerations first, and room for those of the block.
-    `coefficients` is space to work in. The rows of `samples` whose times are passed are filled in, and the ends of
-    steps are written to `ends`, if that has room.
+    `dynamics` is a `ForwardDynamics`. `history` begins with the last accelerations before the block, and has room for
+    those of the block. `totals` are moved on. `coefficients` is space to work in. The rows of `samples` whose times are
+    passed are filled in, and the ends of steps are written to `ends`, if that has room.
     """
     optimize_for_size()
     back = place.back
@@ -187,27 +194,25 @@ def _advance(dynamics, sundman, timestep, history, totals, coefficients, samples
         if not (abs(after.phi) < LARGEST and timestep * abs(after.rate) < LARGEST_TURN):
             status = NOT_FINITE  # it may also be NaN
             break
-        span = whole_duration(sundman, curve, history.phi, end)
-        acceleration = _mean_steady(history, end - 1 - back, node, after)
-        passed = (totals.time[0] + span) * (1 + 1e-14)  # a sample may be so much after the step
-        if samples.times[sample] <= passed:
+        duration = whole_duration(sundman, curve, history.phi, end)
+        steady = _mean_steady(history, end - 1 - back, node, after)
+        step = WholeStep(node, after, duration, steady)
+        if samples.times[sample] <= _latest(totals, step):
             fit(curve, history.phi, end)
-        while sample < samples.times.size and samples.times[sample] <= passed:
-            since = samples.times[sample] - totals.time[0]
-            there = find(sundman, curve, node, after, span, since)
-            _write(sundman, there, totals, acceleration, since, samples.states, sample)
-            sample += 1
-            if sample == samples.times.size:  # the run ends within this step
+            sample = _write_samples(sundman, curve, step, totals, samples, sample)
+            if sample == samples.times.size:
                 status = DONE
-                after = there
-                span = since
         if row < ends.times.size:
-            ends.times[row] = totals.time[0] + span
-            _write(sundman, after, totals, acceleration, span, ends.states, row)
+            if status == DONE:  # the run ends with its last sample, within this step
+                ends.times[row] = samples.times[sample - 1]
+                copy(samples.states[sample - 1], ends.states[row])
+            else:
+                ends.times[row] = totals.time[0] + duration
+                _write(sundman, after, step, totals, duration, ends.states, row)
             row += 1
-        _add(totals.time, span)
-        _add(totals.position, span * (totals.velocity[0] + span * acceleration / 2))
-        _add(totals.velocity, span * acceleration)
+        _add(totals.time, duration)
+        _add(totals.position, duration * (totals.velocity[0] + duration * steady / 2))
+        _add(totals.velocity, duration * steady)
         node = after
     for k in range(COUNT):
         history.phi[k] = history.phi[end - COUNT + k]
@@ -223,13 +228,13 @@ def _take_step(dynamics, sundman, timestep, history, totals, end):
     second = totals.second[0]
     predicted = square * (second + weighted(POSITION_WEIGHTS, _NEXT, history.phi, end))
     rate = timestep * (first + weighted(VELOCITY_WEIGHTS, _NEXT, history.phi, end))
-    both = accelerations(dynamics, sundman, predicted, rate)
-    history.phi[end] = both.phi
-    history.steady[end] = both.steady
+    new = evaluate(dynamics, sundman, predicted, rate)
+    history.phi[end] = new.phi
+    history.steady[end] = new.steady
     corrected = square * (second + weighted(POSITION_WEIGHTS, _LAST, history.phi, end + 1))
     law = sundman.law
     slope = law.sine * math.cos(predicted) - law.cosine * math.sin(predicted)
-    acceleration = both.phi + slope * (corrected - predicted)
+    acceleration = new.phi + slope * (corrected - predicted)
     history.phi[end] = acceleration
     _add(totals.first, acceleration)
     _add(totals.second, totals.first[0])
@@ -237,17 +242,36 @@ def _take_step(dynamics, sundman, timestep, history, totals, end):
 
 @inlined
 def _mean_steady(history, index, before, after):
-    """Return the steady acceleration in the step that ends with that of an `index` [m/s^2].
+    """Return the mean acceleration of the slide less arm sin(phi) in a step [m/s^2].
 
-    It hardly changes but for rounding, which is largest where the load is fastest, and dt/ds is least.
+    The step ends at an `index` of the history, and its nodes are `before` and `after`.
+    It changes by rounding alone, which is largest where the load is fastest, and there dt/ds is least.
     """
     weighted_sum = before.dt_ds * history.steady[index - 1] + after.dt_ds * history.steady[index]
     return weighted_sum / (before.dt_ds + after.dt_ds)
 
 
+@inlined
+def _latest(totals, step):
+    """Return the time [s] up to which samples belong to a step: its end, but for rounding."""
+    return (totals.time[0] + step.duration) * (1 + 1e-14)
+
+
 @compiled
-def _write(sundman, node, totals, acceleration, since, states, row):
-    """Write the state at a node to a row of `states`, `since` [s] after the begin of its step, where `totals` hold."""
+def _write_samples(sundman, curve, step, totals, samples, sample):
+    """Write the samples within a step, from an index `sample` on, and return the index of the next one."""
+    optimize_for_size()
+    while sample < samples.times.size and samples.times[sample] <= _latest(totals, step):
+        since = samples.times[sample] - totals.time[0]
+        node = find(sundman, curve, step, since)
+        _write(sundman, node, step, totals, since, samples.states, sample)
+        sample += 1
+    return sample
+
+
+@compiled
+def _write(sundman, node, step, totals, since, states, row):
+    """Write the state at a node, `since` [s] after the start of a step, where `totals` hold, to a row of `states`."""
     optimize_for_size()
     last = states.shape[1] // 2 - 1
     phi_dot = node.rate / node.dt_ds
@@ -255,10 +279,10 @@ def _write(sundman, node, totals, acceleration, since, states, row):
     states[row, 2 * last + 1] = phi_dot
     if last > 0:
         velocity = totals.velocity[0]
-        moved = since * (velocity + since * acceleration / 2)
+        moved = since * (velocity + since * step.steady / 2)
         swinging = sundman.arm * math.cos(node.phi) * phi_dot
         states[row, 0] = totals.position[0] + moved + sundman.arm * math.sin(node.phi)
-        states[row, 1 + last] = velocity + since * acceleration + swinging
+        states[row, 1 + last] = velocity + since * step.steady + swinging
 
 
 @inlined

@@ -24,8 +24,8 @@ from mjbeer.integrators.gauss_jackson.weights import (
 _ATTEMPTS = 5
 """Largest number of improvements of a sample's place in its step."""
 _PUNCTUAL = 3e-5
-"""Distance of a sample from its time, over the step's duration, after which one more improvement, which cubes it,
-leaves nothing but rounding."""
+"""Distance of a sample from its time, as a share of the step's duration, after which one more improvement leaves
+nothing but rounding: it cubes the distance."""
 
 
 class Node(NamedTuple):
@@ -34,6 +34,15 @@ class Node(NamedTuple):
     phi: float  # [rad]
     rate: float  # dphi/ds [rad/s]
     dt_ds: float
+
+
+class WholeStep(NamedTuple):
+    """What a step has led to."""
+
+    before: Node  # at its start
+    after: Node  # at its end
+    duration: float  # [s]
+    steady: float  # mean acceleration of the slide less arm sin(phi) [m/s^2]
 
 
 class StepCurve(NamedTuple):
@@ -96,7 +105,7 @@ def node_at(sundman, curve, share):
     return Node(phi, rate, dt_ds(sundman, phi))
 
 
-@compiled
+@inlined
 def duration(sundman, curve, share):
     """Return the time [s] that passes in the first share of the step, if the curve is fitted."""
     mean = 0.0
@@ -112,25 +121,22 @@ def duration(sundman, curve, share):
 
 
 @compiled
-def find(sundman, curve, before, after, span, since):
-    """Return the node `since` [s] after the begin of the step, if the curve is fitted.
-
-    The nodes at its begin and its end are `before` and `after`, `span` [s] apart.
-    """
+def find(sundman, curve, step, since):
+    """Return the node `since` [s] after the start of a `WholeStep`, if the curve is fitted."""
     optimize_for_size()
     # First the cubic that has the right value and slope, s over t, at both ends of the step.
-    share = since / span
-    first = span / (curve.timestep * before.dt_ds)
-    last = span / (curve.timestep * after.dt_ds)
-    place = share * (first + share * (3 - 2 * first - last + share * (first + last - 2)))
+    part = since / step.duration
+    first = step.duration / (curve.timestep * step.before.dt_ds)
+    last = step.duration / (curve.timestep * step.after.dt_ds)
+    share = part * (first + part * (3 - 2 * first - last + part * (first + last - 2)))
     for _ in range(_ATTEMPTS):
-        node = node_at(sundman, curve, place)
-        late = since - duration(sundman, curve, place)
+        node = node_at(sundman, curve, share)
+        late = since - duration(sundman, curve, share)
         # Newton's step in s, and a second term for `growth`, by which share dt/ds grows in a second of s.
         growth = sundman.varying * sundman.turns * math.sin(2 * sundman.turns * node.phi)
         growth *= node.rate / (2 * node.dt_ds * node.dt_ds)
         ahead = late / node.dt_ds
-        place += ahead * (1 - growth * ahead / 2) / curve.timestep
-        if abs(late) <= _PUNCTUAL * span:
+        share += ahead * (1 - growth * ahead / 2) / curve.timestep
+        if abs(late) <= _PUNCTUAL * step.duration:
             break
-    return node_at(sundman, curve, place)
+    return node_at(sundman, curve, share)

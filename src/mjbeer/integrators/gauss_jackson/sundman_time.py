@@ -25,7 +25,7 @@ LARGEST_TURN = 4.0
 _MOST_POINTS = 12
 """Largest number of points over which dt/ds is integrated."""
 _LARGEST_ELLIPSE = 20.0
-"""Largest ellipse of `_points_for`: with a larger one, points would be too few where phi is no line in the step."""
+"""Largest ellipse of `_points_for`: a larger one would give too few points, as phi is no straight line in a step."""
 
 
 class PendulumLaw(NamedTuple):
@@ -60,13 +60,17 @@ def sundman_time(
 
     The duration of a step in which phi turns by `largest_turn` [rad] is known to some `precision`, a share of it.
     """
-    varying, turns = (law.coupling, 1.0) if law.coupling > 0 else (law.chord, 0.5)
     constant = law.base / unit
-    count = _points_for(constant, varying / unit, turns, precision, largest_turn)
+    varying = law.chord / unit
+    turns = 0.5
+    if law.coupling > 0:
+        varying = law.coupling / unit
+        turns = 1.0
+    count = _points_for(constant, varying, turns, precision, largest_turn)
     points, weights = _gauss(count)
     return SundmanTime(
         constant=constant,
-        varying=varying / unit,
+        varying=varying,
         turns=turns,
         law=PendulumLaw(
             constant=law.ramp / unit,
@@ -83,9 +87,9 @@ def sundman_time(
 def _points_for(constant: float, varying: float, turns: float, precision: float, largest_turn: float) -> int:
     """Return the number of points with which Gauss's formula gives a duration to some precision.
 
-    Its error is the size of an ellipse (the sum of its half-axes, over half the distance of its foci) to the power of
-    minus twice the number of points. The foci are the ends of the step, and on the ellipse lies the complex angle at
-    which dt/ds vanishes.
+    Its error falls by the square of an ellipse's size with each point. The foci of the ellipse are the ends of the
+    step, and the complex angle at which dt/ds vanishes lies on it. Its size is the sum of its half-axes, divided by
+    half the distance of its foci.
     """
     size = math.log(_LARGEST_ELLIPSE)
     if varying > 0 and largest_turn > 0:

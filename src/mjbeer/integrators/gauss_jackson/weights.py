@@ -31,6 +31,7 @@ CENTRE = LAG + 0.5
 VELOCITY = 1
 """The power of z/(-ln(1 - z)) for velocities."""
 POSITION = 2
+"""The same for positions."""
 
 
 def weights(power: int, back: int) -> np.ndarray:
@@ -80,7 +81,7 @@ def _product(first: Sequence[Any], second: Sequence[Any]) -> list[Any]:
 def _of_ordinates(differences: Sequence[Any]) -> list[Any]:
     """Return the weights of accelerations, the oldest first, from those of their differences, z^0 first.
 
-    z^j a_n is the sum of (-1)^k (j over k) a_(n-k).
+    z^j a_n is the sum over k of (-1)^k binomial(j, k) a_(n-k).
     """
     ordinates = []
     for k in range(COUNT):
