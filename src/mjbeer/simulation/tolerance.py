@@ -252,7 +252,7 @@ def _stiffest(scene: Scene) -> float:
     """
     if not scene.damping_law:
         return 0.0
-    slip = min(scene.damping_law.slip_rate(scene.mass * scene.gravity * scene.can.radius), LARGEST)
+    slip = min(scene.damping_law.rate_at(scene.mass * scene.gravity * scene.can.radius), LARGEST)
     return float(relaxation_rate(scene, np.linspace(0, math.pi, 91), slip).max())
 
 

@@ -74,7 +74,7 @@ class Record:
         self._energy_change = _largest(self._energy_change, energy - self._energy)
         if scene.dissipates:
             self.largest_slip_rate = _largest(self.largest_slip_rate, slip_rate(scene, motion.phi_dot, motion.u_dot))
-            if scene.damping_law.holds is not None:
+            if scene.damping_law.valid_rates is not None:
                 fast = np.flatnonzero(centrifugal_ratio(scene, motion.u_dot) > 1)
                 self.no_lump_at = min(self.no_lump_at, *motion.time[fast[:1]].tolist(), math.inf)
             return
