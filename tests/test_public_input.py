@@ -52,6 +52,7 @@ GOOD: dict[str, Any] = {
 GOOD_HERE: dict[str, dict[str, Any]] = {
     "Track": {"time": ROLLED.time, "along": ROLLED.u}, "read_track": {"path": TABLE},
     "fit": {"track": mjbeer.Track(ROLLED.time, ROLLED.u), "scene": mjbeer.sliding()},
+    "Standing": {"can": Can.sheet_metal(), "fill": 0.5, "name": "beer", "density": 1e3, "viscosity": 1e-6},
     "frame": {"time": 0.1}, "export": {"path": "can.xml"},
     "reset": {"model": MODEL, "data": mujoco.MjData(MODEL)}, "attach": {"can": mjbeer.standing()},
     "refill": {"model": build(mjbeer.standing()), "can": mjbeer.standing()},
@@ -69,7 +70,8 @@ def public() -> Iterator[tuple[str, Callable[..., object]]]:
     """Everything that is called: public names, their class methods, the methods of what they return, and some more."""
     for name in mjbeer.__all__:
         thing = getattr(mjbeer, name)
-        if not (inspect.isclass(thing) and issubclass(thing, (Exception, mjbeer.Fit))):  # `fit` alone makes a Fit
+        # `fit` alone makes a Fit, and `simulate` a Run.
+        if not (inspect.isclass(thing) and issubclass(thing, (Exception, mjbeer.Fit, mjbeer.Run))):
             yield name, thing
         if inspect.isclass(thing):
             yield from methods(name, thing, thing)
@@ -173,7 +175,7 @@ def either_sign(highest: float) -> st.SearchStrategy[float]:
     return st.tuples(st.sampled_from([-1.0, 1.0]), decades(1e-20, highest)).map(math.prod)
 
 
-RATIO = decades(1 / require.RATIO, require.RATIO)
+RATIO = decades(*require.RATIO)
 ANGLES = st.one_of(st.sampled_from([0.0, 1.0, math.pi]), either_sign(require.ANGLE))
 RATES = st.one_of(st.just(0.0), either_sign(require.RATE))
 
@@ -184,10 +186,10 @@ def extreme(draw: st.DrawFn) -> Scene:
     radius, mass = draw(decades(*require.SIZE)), draw(decades(*require.MASS))
     can_mass = draw(st.one_of(st.just(0.0), RATIO)) * mass
     offset = draw(st.one_of(st.floats(0, 1), st.just(1.0), decades(1e-14, 1))) * radius
-    inertias = [draw(st.one_of(st.just(0.0), decades(1e-12, require.RATIO))) * radius**2 for _ in range(2)]
+    inertias = [draw(st.one_of(st.just(0.0), decades(1e-12, require.LARGEST_INERTIA))) * radius**2 for _ in range(2)]
     try:
         can, load = Can(radius, radius, can_mass, can_mass * inertias[0]), Load(mass, offset, mass * inertias[1])
-        incline = draw(st.one_of(st.floats(-1.5, 1.5), st.sampled_from([0.0, -1e-9, 1e-40])))
+        incline = draw(st.one_of(st.floats(*require.INCLINE), st.sampled_from([0.0, -1e-9, 1e-40])))
         gravity = draw(st.one_of(st.just(0.0), decades(*require.GRAVITY)))
         return Scene(can, load, incline, draw(st.sampled_from(ATTACHMENTS)), gravity)
     except ParameterError:

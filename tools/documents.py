@@ -280,10 +280,14 @@ def honesty() -> str:
     found, known = COUNTS["kinds"]["all"], COUNTS["known"]
     first = COUNTS["settings"][stability_study.FIRST]
     needless, above, twice = stability_study.NEEDLESS, stability_study.ABOVE, stability_study.TWICE
+    outside = ended(COUNTS["kinds"].get(stability_study.OUTSIDE, {}))
+    refused = f"{found.get(REFUSED, 0):,} were refused"
+    if outside:
+        refused += f", {outside:,} of them because they are outside the domain"
     return prose(
         f"{ended(found):,} random runs, with the numbers from {first} on, ended like this: {trusted(found):,} were "
         f"trusted, and {wrong_of(found)}. {found.get(DOUBTED, 0):,} were doubted, {found.get(needless, 0):,} of them "
-        f"although their samples were right, and {found.get(REFUSED, 0):,} were refused. {alone(found):,} were judged "
+        f"although their samples were right, and {refused}. {alone(found):,} were judged "
         f"by one theory alone, and {found.get(NOBODY, 0)} by none. {found.get(above, 0)} of the trusted runs had an "
         f"error above its estimate, {found.get(twice, 0)} of them above twice the estimate. Of {ended(known):,} runs "
         f"of known cases {trusted(known):,} were trusted, and {known.get(SILENT, 0)} of these were wrong."

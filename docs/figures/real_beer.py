@@ -31,8 +31,8 @@ _WAY = 1.0
 _SLOWEST = 0.25
 """An acceleration over g sin(alpha) below all that occur: how long a run must at least take."""
 _INCLINES = (2.0, 5.0, 10.0)
-_VOLUMES = np.geomspace(0.3, 350, 61)
-_FEW = (0.3, 2.0, 10.0, 50.0, 177.0, 350.0)
+_VOLUMES = np.geomspace(1.0, 350, 61)
+_FEW = (1.0, 2.0, 10.0, 50.0, 177.0, 350.0)
 """Volumes of water [mL]: of the lines, and of the points of exact theory."""
 _ROSCH = 10.0
 """Volume [mL] near which Rosch (The College of Wooster, 2006) saw a can accelerate less."""
@@ -51,7 +51,7 @@ def water_in(volume: float, incline: float, friction: float = 1.0, drag: float =
     half_angle = float(brentq(lambda beta: beta - math.sin(2 * beta) / 2 - area, 0, math.pi, xtol=1e-15))
     fill = math.sin(half_angle / 2) ** 2
     own = liquid_in("water", incline, fill, CAN).damping
-    damping = Damping(friction * own.linear, friction * own.quadratic, holds=own.holds) if friction else 0.0
+    damping = Damping(friction * own.linear, friction * own.quadratic, valid_rates=own.valid_rates) if friction else 0.0
     return sliding(incline, fill, CAN, LIQUIDS["water"].density, damping=damping, drag=drag)
 
 
@@ -121,7 +121,7 @@ def draw_first_metre(path: pathlib.Path) -> None:
             axes.axhline(1.0, **REFERENCE)
             axes.plot(_VOLUMES, footnote, label="without friction, beer that does not swing: footnote 4", **THEORY)
             axes.set(xscale="log", xlim=(_VOLUMES[0], 400), ylim=(0.27, 1.08))
-            marks = (0.3, 1, 3, 10, 30, 100, 350)
+            marks = (1, 3, 10, 30, 100, 350)
             axes.set_xticks(marks, map(str, marks))
             axes.tick_params(which="minor", labelbottom=False)
         for degrees in _INCLINES:

@@ -1,17 +1,25 @@
 """mjbeer: the rolling half-full beer can as a MuJoCo model that can be trusted.
 
-All quantities are in SI units and radians. The letters of the formulas and the equation numbers that
-docstrings cite are from K. T. McDonald, "The Rolling Motion of a Half-Full Beer Can".
+All quantities are in SI units and radians. The letters of the formulas and the numbers of equations
+are those of K. T. McDonald, "The Rolling Motion of a Half-Full Beer Can".
 """
 
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from mjbeer.exceptions import AngleWarning, LiquidWarning, MjbeerError, UntrustedWarning
+from mjbeer.exceptions import (
+    AngleWarning,
+    DivergenceError,
+    LiquidWarning,
+    MjbeerError,
+    ParameterError,
+    ToleranceError,
+    UntrustedWarning,
+)
 from mjbeer.theory.can import Can, Damping, Load
 from mjbeer.theory.liquid import liquid
 from mjbeer.theory.scene import Scene, frozen, hoop, pendulum, sliding
-from mjbeer.theory.standing import standing
+from mjbeer.theory.standing import Standing, standing
 from mjbeer.theory.trajectory import Trajectory, exact
 
 if TYPE_CHECKING:
@@ -20,6 +28,7 @@ if TYPE_CHECKING:
     from mjbeer.model.export import export
     from mjbeer.model.free import attach, refill
     from mjbeer.model.joints import reset
+    from mjbeer.simulation.run import Run
     from mjbeer.simulation.simulate import simulate
     from mjbeer.studies.sweep import sweep
     from mjbeer.tracks.fit import Fit, fit
@@ -29,11 +38,16 @@ __all__ = [
     "AngleWarning",
     "Can",
     "Damping",
+    "DivergenceError",
     "Fit",
     "LiquidWarning",
     "Load",
     "MjbeerError",
+    "ParameterError",
+    "Run",
     "Scene",
+    "Standing",
+    "ToleranceError",
     "Track",
     "Trajectory",
     "UntrustedWarning",
@@ -63,6 +77,7 @@ _LAZY = {
     "model.build": ("build", "specify"),
     "model.export": ("export",),
     "model.joints": ("reset",),
+    "simulation.run": ("Run",),
     "simulation.simulate": ("simulate",),
     "drawing.video": ("render",),
     "studies.sweep": ("sweep",),

@@ -1,4 +1,4 @@
-"""The errors that mjbeer raises on purpose, and its warnings. Catching `MjbeerError` catches all errors."""
+"""The errors that mjbeer raises on purpose, all of them `MjbeerError`, and its warnings."""
 
 import warnings
 from collections.abc import Callable
@@ -10,7 +10,7 @@ class MjbeerError(Exception):
 
 
 class ParameterError(MjbeerError, ValueError):
-    """A parameter has a value that is not allowed, or not for what is asked; the message says what is."""
+    """A parameter is invalid, or invalid for this call; the message says what is allowed."""
 
 
 class NoEquilibriumError(MjbeerError):
@@ -18,7 +18,7 @@ class NoEquilibriumError(MjbeerError):
 
 
 class NoLibrationError(MjbeerError):
-    """The motion asked for is no libration: its amplitude or start is at or beyond the separatrix."""
+    """The motion is no swing: its amplitude or its start is at or beyond the separatrix."""
 
 
 class UnsupportedError(MjbeerError):
@@ -30,7 +30,7 @@ class DivergenceError(MjbeerError):
 
 
 class ToleranceError(MjbeerError):
-    """A run did not reach the requested tolerance; the message names how near it came."""
+    """A run did not reach the requested tolerance; the message says how near it came."""
 
 
 class RenderingError(MjbeerError):
@@ -38,24 +38,35 @@ class RenderingError(MjbeerError):
 
 
 class AngleWarning(UserWarning):
-    """A start angle is so large that degrees may have been meant, where radians are taken."""
+    """An initial angle is so large that degrees may have been meant; radians are taken."""
 
 
 class UntrustedWarning(UserWarning):
-    """A run is not to be relied on, as its steps show (`Trajectory.warnings`), or as a parent's options let expect."""
+    """A run is unreliable, as its steps show (`Trajectory.warnings`).
+
+    Of an attached can: its runs would be, with the options of the model around it.
+    """
 
 
 class LiquidWarning(UserWarning):
-    """A liquid is no lump, slips at rates that its damping is not for, or sloshes higher than linear theory goes."""
+    """A model of a liquid is beyond its range.
+
+    The liquid is no lump, slips at rates for which its damping is not valid, or sloshes higher than
+    linear theory allows.
+    """
 
 
 class TemplateError(MjbeerError):
-    """A file of MJCF is missing, lacks an element that mjbeer uses, or moves otherwise than theory says."""
+    """A file of MJCF is missing or lacks an element, or its accelerations differ from theory."""
 
 
 class OutputError(MjbeerError):
     """An output file could not be written, or another command is writing to its folder."""
 
 
-# Gives a `LiquidWarning` unless a sweep collects them: the filters of `warnings`, of all threads at once, would not do.
-warn_of_liquid: ContextVar[Callable[..., None]] = ContextVar("warn_of_liquid", default=warnings.warn)
+Warn = Callable[..., None]
+warn_of_liquid: ContextVar[Warn] = ContextVar("warn_of_liquid", default=warnings.warn)
+"""The function that gives a `LiquidWarning`: `warnings.warn`, unless a sweep collects them.
+
+The filters of `warnings` cannot do that, since all threads share them.
+"""

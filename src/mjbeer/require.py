@@ -1,4 +1,7 @@
-"""The domain of mjbeer, and checks of arguments: each returns the valid value, or raises a `ParameterError`."""
+"""The domain of mjbeer, and checks of arguments: each returns the valid value, or raises an error.
+
+The error is a `ParameterError`, which says what came and what is allowed.
+"""
 
 import math
 import numbers
@@ -15,16 +18,17 @@ from mjbeer.exceptions import AngleWarning, ParameterError
 
 T = TypeVar("T")
 
-# The domain: the smallest and the largest value.
-SIZE = 1e-3, 1e2  # of radius and length of a can [m]
-MASS = 1e-9, 1e4  # that is not 0 [kg]
-RATIO = 1e4  # of two masses, or of inertias compared with masses at the radius, either way
-INCLINE = -math.nextafter(math.pi / 2, 0), math.nextafter(math.pi / 2, 0)  # [rad]
-FILL = 1e-12, 1.0  # filling height of beer, over the diameter
-GRAVITY = 1e-3, 1e3  # that is not 0 [m/s^2]
-ANGLE = 1e4  # at the start, either way [rad]
-RATE = 1e6  # at the start, either way [rad/s]
-TIMESTEP = 1e-7, 10.0  # [s]
+# The domain is that of cans: the smallest and the largest value of each quantity.
+SIZE = (1e-3, 1e2)  # radius and length of a can [m]
+MASS = (1e-9, 1e4)  # [kg]; a can may also have none
+RATIO = (1e-3 * (1 - 1e-12), 1e3 * (1 + 1e-12))  # mass of a can in masses of its load, rounded
+LARGEST_INERTIA = RATIO[1]  # of a can or a load, divided by its mass and the radius squared
+INCLINE = (-math.radians(85), math.radians(85))  # [rad]
+FILL = (0.01, 1.0)  # depth of beer divided by the can's diameter
+GRAVITY = (1e-3, 1e3)  # [m/s^2]; there may also be none
+ANGLE = 1e4  # largest initial angle, either way [rad]
+RATE = 1e6  # largest initial rate, either way [rad/s]
+TIMESTEP = (1e-7, 10.0)  # [s]
 
 _SHORT = reprlib.Repr()
 _SHORT.maxstring = _SHORT.maxother = _SHORT.maxlong = 80
@@ -32,81 +36,107 @@ _SHORT.maxstring = _SHORT.maxother = _SHORT.maxlong = 80
 
 def number(name: str, value: Any, unit: str = "") -> float:
     """Return a real number of Python's or NumPy's as a finite float."""
-    if not math.isfinite(result := _float(value)):
+    result = _float(value)
+    if not math.isfinite(result):
         raise _refused(f"{name} must be a finite number", unit, value)
     return result
 
 
 def within(name: str, value: Any, lowest: float, highest: float, unit: str = "", zero: bool = False) -> float:
     """Return `value` as a float from `lowest` to `highest`, or 0 if `zero` is allowed as well."""
-    if not (lowest <= (result := number(name, value, unit)) <= highest or (zero and result == 0)):
-        either = "0, or " if zero and lowest > 0 else ""
-        raise _refused(f"{name} must be {either}between {lowest:.6g} and {highest:.6g}", unit, value)
-    return result
+    result = number(name, value, unit)
+    if lowest <= result <= highest or (zero and result == 0):
+        return result
+    allowed = f"between {lowest:.6g} and {highest:.6g}"
+    if zero and lowest > 0:
+        allowed = f"0, or {allowed}"
+    raise _refused(f"{name} must be {allowed}", unit, value)
 
 
 def fill(value: Any) -> float:
-    """Return the height of a load over the can's diameter as a float; half is 0.5, and not 50."""
+    """Return the depth of a load divided by the can's diameter as a float: half is 0.5, not 50."""
     lowest, highest = FILL
-    if not lowest <= (result := number("fill", value)) <= highest:
-        allowed = f"a fraction between {lowest:g} and {highest:g} (50 % is 0.5)"
-        raise _refused(f"fill must be {allowed}", "", value)
-    return result
+    result = number("fill", value)
+    if lowest <= result <= highest:
+        return result
+    allowed = f"a fraction between {lowest:g} and {highest:g} (50 % is 0.5)"
+    raise _refused(f"fill must be {allowed}", "", value)
 
 
 def positive(name: str, value: Any, unit: str = "") -> float:
     """Return `value` as a finite float greater than 0."""
-    if not (result := number(name, value, unit)) > 0:
-        raise _refused(f"{name} must be greater than 0", unit, value)
-    return result
+    result = number(name, value, unit)
+    if result > 0:
+        return result
+    raise _refused(f"{name} must be greater than 0", unit, value)
 
 
 def non_negative(name: str, value: Any, unit: str = "", finite: bool = True) -> float:
     """Return `value` as a float of 0 or more, which is finite unless infinity is allowed."""
-    if not (result := number(name, value, unit) if finite else _float(value)) >= 0:
-        raise _refused(f"{name} must be 0 or greater{'' if finite else ' (infinity is allowed)'}", unit, value)
-    return result
+    result = number(name, value, unit) if finite else _float(value)
+    if result >= 0:
+        return result
+    infinity = "" if finite else " (infinity is allowed)"
+    raise _refused(f"{name} must be 0 or greater{infinity}", unit, value)
 
 
 def start(phi0: Any, phi_dot0: Any) -> tuple[float, float]:
-    """Return the start angle [rad] and rate [rad/s] as floats."""
-    return within("phi0", phi0, -ANGLE, ANGLE, "rad"), within("phi_dot0", phi_dot0, -RATE, RATE, "rad/s")
+    """Return the initial angle [rad] and its rate [rad/s] as floats."""
+    angle = within("phi0", phi0, -ANGLE, ANGLE, "rad")
+    rate = within("phi_dot0", phi_dot0, -RATE, RATE, "rad/s")
+    return angle, rate
 
 
 def warn_of_degrees(phi0: float) -> None:
-    """Warn, where the calling function is called, of a start angle [rad] beyond a whole turn, as one in degrees is."""
+    """Warn if an initial angle [rad] is more than a whole turn, as an angle in degrees would be.
+
+    The warning points at the line that called the caller of this function.
+    """
     if abs(phi0) > 2 * math.pi:
-        meant = f"phi0 = {phi0:.6g} is taken as radians: if degrees are meant, write math.radians({phi0:.6g})"
-        warnings.warn(meant, AngleWarning, stacklevel=3)
+        meant = f"if degrees are meant, write math.radians({phi0:.6g})"
+        message = f"phi0 = {phi0:.6g} is taken as radians: {meant}"
+        warnings.warn(message, AngleWarning, stacklevel=3)
 
 
 def samples(name: str, value: Any, unit: str = "") -> np.ndarray:
-    """Return a list, a tuple, a range or a one-dimensional array of finite numbers as doubles, of shape (samples,)."""
+    """Return finite numbers as doubles, shape (samples,).
+
+    They may come as a list, a tuple, a range or a one-dimensional array.
+    """
     array = np.asarray(value)
     if array.ndim != 1 or not len(array) or array.dtype.kind not in "iuf":
-        raise _refused(f"{name} must be a list or a one-dimensional array of one or more numbers", unit, value)
+        allowed = "a list or a one-dimensional array of one or more numbers"
+        raise _refused(f"{name} must be {allowed}", unit, value)
     for index in np.flatnonzero(~np.isfinite(array)):
         number(f"{name}[{index}]", array[index], unit)
     return array.astype(float, copy=False)
 
 
 def times(name: str, value: Any, increasing: bool = False) -> np.ndarray:
-    """Return times [s], none before 0, or a single one, as a new array of shape (samples,)."""
+    """Return times [s], none of them before 0, as a new array of shape (samples,).
+
+    A single number is one time.
+    """
     array = samples(name, np.atleast_1d(value), "s").copy()
     if array.min() < 0:
         non_negative(f"{name}[{array.argmin()}]", array.min(), "s")
-    if increasing and ((steps := array[1:] - array[:-1]) <= 0).any():
-        at = steps.argmin() + 1
-        raise ParameterError(f"{name} must increase, but {name}[{at}] is {array[at]} s after {array[at - 1]} s")
+    steps = np.diff(array)
+    if increasing and (steps <= 0).any():
+        index = steps.argmin() + 1
+        found = f"{name}[{index}] is {array[index]} s after {array[index - 1]} s"
+        raise ParameterError(f"{name} must increase, but {found}")
     return array
 
 
 def choice(name: str, value: Any, allowed: Iterable[T]) -> T:
     """Return `value` if it is one of the `allowed` names, or of True and False if those are."""
-    for each in (names := tuple(allowed)):
-        if isinstance(value, (str, bool, np.bool_)) and value == each:
-            return each
-    raise ParameterError(f"{name} must be one of {', '.join(map(repr, names))}; got {format_value(value)}")
+    options = tuple(allowed)
+    if isinstance(value, (str, bool, np.bool_)):
+        for option in options:
+            if value == option:
+                return option
+    listed = ", ".join(map(repr, options))
+    raise ParameterError(f"{name} must be one of {listed}; got {format_value(value)}")
 
 
 def path(value: Any) -> pathlib.Path:
@@ -123,17 +153,29 @@ def instance(name: str, value: Any, kind: type[T]) -> T:
     return value
 
 
+def set_fields(instance: object, **values: Any) -> None:
+    """Set fields of a frozen dataclass; only for those who make it, as its `__post_init__`."""
+    for name, value in values.items():
+        object.__setattr__(instance, name, value)
+
+
 def format_value(value: object) -> str:
     """Return a value as messages show it: in one short line, NumPy's numbers as plain ones."""
-    text = _SHORT.repr(value.tolist() if isinstance(value, (np.generic, np.ndarray)) else value)
-    return " ".join(text.splitlines())
+    plain = value.tolist() if isinstance(value, (np.generic, np.ndarray)) else value
+    return " ".join(_SHORT.repr(plain).splitlines())
 
 
 def _refused(what: str, unit: str, value: object) -> ParameterError:
-    return ParameterError(f"{what}{f' [{unit}]' if unit else ''}, got {format_value(value)}")
+    in_unit = f" [{unit}]" if unit else ""
+    return ParameterError(f"{what}{in_unit}, got {format_value(value)}")
 
 
 def _float(value: Any) -> float:
-    """Return a number as a float, which may be infinite, and NaN for what is none, as True, "1" and [1.0] are not."""
-    value = value[()] if isinstance(value, np.ndarray) else value  # a number, if the array has no dimensions
-    return float(value) if isinstance(value, numbers.Real) and not isinstance(value, bool) else math.nan
+    """Return a real number as a float, which may be infinite; NaN for True, "1" and [1.0]."""
+    if type(value) is float:  # nearly always, and the checks below take ten times as long
+        return value
+    if isinstance(value, np.ndarray):
+        value = value[()]  # a number, if the array has no dimensions
+    if isinstance(value, numbers.Real) and not isinstance(value, bool):
+        return float(value)
+    return math.nan

@@ -276,7 +276,7 @@ def test_the_solver_of_a_contact_does_not_take_a_light_load_for_nothing() -> Non
 
     The error is the contact's softness, 6e-9 rad; it falls with the square of the timestep.
     """
-    can, load = Can(1e-3, 3e-3, 6e-4, 5e-10), Load(4e-7, 4e-9, 2.3e-13)
+    can, load = Can(1e-3, 3e-3, 4e-4, 3.3e-10), Load(4e-7, 4e-9, 2.3e-13)
     scene = Scene(can, load, 0.0, "sliding", gravity=98.1)
     run = simulate(scene, 15, -3.14, rolling="contact", integrator="DOP853", timestep=0.01)
     assert run.record.largest_turn > 1

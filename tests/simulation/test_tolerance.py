@@ -177,7 +177,7 @@ def test_damped_motions_keep_to_the_tolerance(
         scene, damping=scene.oscillator.base * unit * 10**damping, drag=scene.mass / scene.can.radius * 10**drag
     )
     times = np.linspace(0, 8 / unit, 41)
-    slip = scene.damping_law.slip_rate(scene.mass * scene.gravity * scene.can.radius)
+    slip = scene.damping_law.rate_at(scene.mass * scene.gravity * scene.can.radius)
     stiffest = float(relaxation_rate(scene, np.linspace(0, math.pi, 91), slip).max())
     assume(stiffest * times[-1] < 2e3)  # DOP853 takes steps as short as that
     run = simulate(scene, times[-1], phi0, swing * unit, tolerance=tolerance, times=times)
@@ -286,8 +286,13 @@ def test_what_a_nudge_does_is_not_taken_for_rounding(
 
 
 def test_rounding_that_makes_up_for_the_nudge_is_seen() -> None:
-    """The nudged run and the other one were 5e-13 rad apart, and both were 6e-12 off."""
-    scene, end, tolerance = sliding(-0.15326388238507474, 0.13328350535629055), 5.538977378865426, 3.058050432508829e-12
+    """The nudged run and the other one were 5e-13 rad apart, and both were 6e-12 off.
+
+    This hangs on the last digits of the load, which is 13 % of beer.
+    """
+    load = Load(0.032523384548419416, 0.027765548763228908, 3.5640132183406207e-06)
+    scene = Scene(Can.massless(), load, -0.15326388238507474)
+    end, tolerance = 5.538977378865426, 3.058050432508829e-12
     with contextlib.suppress(ToleranceError):
         run = simulate(scene, end, 3.096948016645381, tolerance=tolerance, times=np.linspace(0, end, 61))
         assert_kept(run, tolerance)

@@ -115,7 +115,7 @@ def test_a_period_is_that_of_exact_theory() -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"fill": [0.5, 1.5]}, r"fill\[1\]: fill must be a fraction between 1e-12 and 1 .*, got 1.5"),
+        ({"fill": [0.5, 1.5]}, r"fill\[1\]: fill must be a fraction between 0.01 and 1 .*, got 1.5"),
         ({"fil": [0.5]}, r"fil\[0\]: sliding\(\) got an unexpected keyword argument 'fil'"),
         ({"phi0": [0.1, 1e11]}, r"phi0\[1\]: phi0 must be between"),
         ({"quantity": "perod"}, "quantity must be one of 'phi', .*'period', .*; got 'perod'"),

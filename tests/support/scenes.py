@@ -29,10 +29,10 @@ def scenes(draw: st.DrawFn) -> Scene:
         return draw(st.floats(low, high))
 
     radius = 10 ** between(-2, 0)
-    mass = draw(st.sampled_from([0.0, 1.0])) * 10 ** between(-3, 1)
+    load_mass = 10 ** between(-2, 1)
+    mass = draw(st.sampled_from([0.0, 1.0])) * load_mass * 10 ** between(-3, 3)
     share = draw(st.sampled_from([0.0, 1.0])) * between(1e-6, 1)
     can = Can(radius, 3 * radius, mass, mass * radius**2 * share)
-    load_mass = 10 ** between(-2, 1)
     load = Load(load_mass, radius * between(0.05, 0.95), load_mass * radius**2 * between(0.05, 0.5))
     attachment = draw(st.sampled_from(["sliding", "frozen"]))
     return Scene(can, load, between(-math.pi / 3, math.pi / 3), attachment)

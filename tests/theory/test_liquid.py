@@ -69,7 +69,7 @@ def test_the_fit_is_as_near_as_it_says() -> None:
     used = liquid_in("water")
     exact_torque = used.damping.torque(used.slip)
     assert exact_torque == pytest.approx(sliding(density=used.density).mass * 9.81 * 0.033 * math.sin(math.radians(10)))
-    assert used.damping.holds == pytest.approx((0.139 * used.slip, 1.39 * used.slip))
+    assert used.damping.valid_rates == pytest.approx((0.139 * used.slip, 1.39 * used.slip))
     x = np.geomspace(0.139, 1.39, 2001)
     ratio = used.damping.torque(used.slip * x) / (exact_torque * x**1.5)
     assert abs(ratio - 1).max() == pytest.approx(FIT_ERROR, rel=0.02)  # the ends are rounded to three digits
@@ -113,8 +113,8 @@ def test_damping_is_continuous_towards_level_ground() -> None:
 
 def test_the_law_says_where_it_holds() -> None:
     """Creep holds down to 0, and so does a swing; water's swing of two radians is one of 18 rad/s."""
-    assert liquid_in("honey").damping.holds == pytest.approx((0.0, 217), rel=0.01)
-    assert liquid_in("water", incline=0.0).damping.holds == pytest.approx((0.0, 1.39 * 37.5), rel=0.01)
+    assert liquid_in("honey").damping.valid_rates == pytest.approx((0.0, 217), rel=0.01)
+    assert liquid_in("water", incline=0.0).damping.valid_rates == pytest.approx((0.0, 1.39 * 37.5), rel=0.01)
 
 
 WARNED = {

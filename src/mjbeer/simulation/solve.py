@@ -97,7 +97,7 @@ def _refuse_stiff(scene: Scene, duration: float, tolerance: float) -> None:
     if not scene.damping_law:
         return
     # The weight of can and load, pulling at the rim, drives them apart at most at this rate.
-    slip = min(scene.damping_law.slip_rate(scene.mass * scene.gravity * scene.can.radius), LARGEST)
+    slip = min(scene.damping_law.rate_at(scene.mass * scene.gravity * scene.can.radius), LARGEST)
     rate = float(relaxation_rate(scene, np.linspace(0, math.pi, 91), slip).max())
     if rate * duration > _STABLE * EVALUATIONS:
         raise not_reached(

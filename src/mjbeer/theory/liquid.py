@@ -1,20 +1,20 @@
-"""A can with a real liquid in it: the scene that has its damping.
+"""A can with a real liquid in it: the scene whose damping follows from viscosity and geometry.
 
-The liquid is one lump that lies still in the rolling can. Three things drag it along, at a slip rate W:
+The liquid is one lump that lies still in the rolling can. Three things drag it along:
 
-- on the wall and the ends of a can that rolls on, a thin liquid's layers, which enter the liquid at one edge and
-  thicken to the other (Sakiadis, AIChE J. 7, 221, 1961; von Karman, Z. angew. Math. Mech. 1, 233, 1921):
-  T = rho a^3 sqrt(nu) (0.8875 sqrt(2 beta) L + 1.2318 a I/(m a^2) A/a^2) W^1.5. The ends are as if each ring were wet
-  all round, and count by their wetted share, I A/m being the second moment of the wetted area A;
-- a thick liquid's creep: the wall shear 4 mu W/(pi sin(theta)) of Stokes flow in a half disc, which the edges, of a
-  length of `_EDGE`, cut off: c = (8/pi) mu a^2 L ln(2/_EDGE). For other fills than a half it is an estimate;
-- in a can that only swings, the oscillating layers of Stokes on wall and ends:
-  c = rho sqrt(nu omega/2) (2 beta a^3 L + 2 I A/m), omega being the frequency of small swings on level ground.
+- In a can that rolls on, a thin liquid has layers on the wall and the ends. They begin where the
+  wall enters the liquid and thicken from there (Sakiadis, AIChE J. 7, 221, 1961; von Karman,
+  Z. angew. Math. Mech. 1, 233, 1921).
+- A thick liquid creeps: it shears everywhere (Stokes).
+- In a can that only swings, wall and ends have the oscillating layers of Stokes.
 
-One law follows, continuous in the incline and the viscosity, and a polynomial in W, as MuJoCo's damping is. It has the
-larger of the first two torques at the slip rate of steady rolling, or, where a swing of some two radians slips faster,
-the swing's torque at the rate at which both kinds of layers drag alike. Where steady rolling is slower than `DECADE` of
-that, the swing's layers take over. A real liquid sloshes as well, 1.5 times faster than the lump swings.
+`_laws` has the formulas, with the slip rate W of can and liquid. One damping is made of them, which
+changes continuously with the incline and the viscosity, and is a polynomial in W, as MuJoCo's is.
+It has the larger torque of layers and creep at the slip rate of steady rolling, or, if a swing of
+about two radians slips faster, the torque of swinging at the rate where both kinds of layers drag
+alike. If steady rolling is slower than a seventh of that rate, the layers of swinging take over.
+
+A real liquid sloshes as well, 1.5 times faster than the lump swings.
 """
 
 import math
@@ -25,7 +25,7 @@ import numpy as np
 
 from mjbeer import require
 from mjbeer.exceptions import LiquidWarning, NoEquilibriumError, ParameterError, warn_of_liquid
-from mjbeer.theory.can import Can, Damping, segment
+from mjbeer.theory.can import Can, Damping, Segment, segment
 from mjbeer.theory.scene import GRAVITY, INCLINE, Scene, remembers_call, sliding
 
 Name = Literal["water", "beer", "olive oil", "glycerol", "honey"]
@@ -35,39 +35,58 @@ NAMES: tuple[Name, ...] = get_args(Name)
 class Properties(NamedTuple):
     """The properties of a liquid on which its flow depends."""
 
-    density: float  # [kg/m^3]
-    viscosity: float  # kinematic [m^2/s]
+    density: float  # rho [kg/m^3]
+    viscosity: float  # kinematic, nu [m^2/s]
 
 
 LIQUIDS: dict[Name, Properties] = {
     # IAPWS (2008): 1.0016 mPa s.
     "water": Properties(998.2, 1.0034e-6),
-    # A lager of 5 % alcohol without its gas. Zhang and Xu, Elements 4, 47 (2008): 1.44 times the viscosity of water.
-    # Liger-Belair and Cilindre, ACS Omega 6, 9672 (2021): 2.42 mPa s at 6 degrees, 1.65 times, and 1010 kg/m^3.
+    # A lager of 5 % alcohol without its gas. Zhang and Xu, Elements 4, 47 (2008): 1.44 times the
+    # viscosity of water. Liger-Belair and Cilindre, ACS Omega 6, 9672 (2021): 2.42 mPa s at 6
+    # degrees, 1.65 times that of water, and 1010 kg/m^3.
     "beer": Properties(1010.0, 1.6e-6),
-    # CRC Handbook of Chemistry and Physics: 84 mPa s; oils differ by some 10 %.
+    # CRC Handbook of Chemistry and Physics: 84 mPa s; oils differ by about 10 %.
     "olive oil": Properties(911.0, 9.2e-5),
-    # Segur and Oberstar, Ind. Eng. Chem. 43, 2117 (1951): 1.41 Pa s without water, of which a hundredth takes a fifth
-    # (Cheng, Ind. Eng. Chem. Res. 47, 3285, 2008).
+    # Segur and Oberstar, Ind. Eng. Chem. 43, 2117 (1951): 1.41 Pa s without water; 1 % of water
+    # makes it a fifth less (Cheng, Ind. Eng. Chem. Res. 47, 3285, 2008).
     "glycerol": Properties(1261.0, 1.12e-3),
-    # Of 18 % water, some 10 Pa s: 19 with 16 %, a hundredth takes a third (Munro, J. Econ. Entomol. 36, 769, 1943).
+    # With 18 % of water, about 10 Pa s: 19 Pa s with 16 %, and 1 % more makes it a third less
+    # (Munro, J. Econ. Entomol. 36, 769, 1943).
     "honey": Properties(1420.0, 7e-3),
 }
 """Handbook values at 20 degrees Celsius."""
 
-WALL = 0.8875  # Sakiadis's drag on a wall that enters still liquid, over rho U^1.5 sqrt(nu X) L
-ENDS = 2 * 0.61592  # von Karman's torque on two discs, over rho sqrt(nu) W^1.5 and the second moment of the area
-DECADE = 0.139, 1.39
-"""Slip rates, over that of the fit, between which the polynomial is within 7.85 % of W^1.5; at the slip rate of the fit
-it is exact. No polynomial with non-negative coefficients is better over a decade."""
+WALL = 0.8875
+"""Drag of Sakiadis's layer on a wall that moves at U, divided by rho U^1.5 sqrt(nu X) L.
+
+X is the length of wall that the layer covers, and L its width.
+"""
+ENDS = 2 * 0.61592
+"""Torque of von Karman's layers on two discs, divided by rho sqrt(nu) W^1.5 and by the second
+moment of the discs' area."""
+DECADE = (0.139, 1.39)
+"""Slip rates, divided by that of the fit, between which the polynomial is within 7.85 % of W^1.5.
+
+At the slip rate of the fit it is exact. No polynomial with non-negative coefficients is better
+in a decade."""
 _CURVED = (1 + math.sqrt(1 - 16 / (2 + 10**0.25 + 10**-0.25) ** 2)) / 2
-"""Share of the quadratic term in the torque at the slip rate of that fit. With x the slip rate over the decade's
-geometric mean it is x + x^2 times a factor: over x^1.5 that is sqrt(x) + 1/sqrt(x), 2 at x = 1 and most at the ends."""
-_EDGE = 0.03  # of a, where the liquid slips beside the edges: a third or three times of it changes c by a quarter
+"""Share of the quadratic term in the torque of that polynomial at the slip rate of the fit.
+
+With x the slip rate divided by the decade's geometric mean, the polynomial is proportional to
+x + x^2. Divided by x^1.5 that is sqrt(x) + 1/sqrt(x), 2 at x = 1 and largest at both ends."""
+_EDGE = 0.03
+"""Length beside the edges, divided by a, in which the liquid slips along the wall.
+
+A third or three times of it changes the damping of creep by a quarter."""
 FILM_LOAD = 4.4427
-"""Largest volume of a film that a turning wall carries round steadily, over a L sqrt(nu a W/g) (Moffatt, J. Mecanique
-16, 651, 1977). More liquid than that stays below as a pool."""
-_CARRIED = 1 / 3  # share of the liquid that such a film can hold, from which on the rest of it is no lump
+"""Largest volume of a film that a turning wall carries round, divided by a L sqrt(nu a W/g).
+
+More liquid than that stays below as a pool (Moffatt, J. Mecanique 16, 651, 1977)."""
+_CARRIED = 1 / 3
+"""Share of the liquid that such a film can hold from which on the rest of it is no lump."""
+_TURBULENT = 1e6
+"""Reynolds number of a layer at its end from which on it may be turbulent on any wall."""
 
 
 @dataclass(frozen=True)
@@ -75,11 +94,16 @@ class Liquid:
     """A liquid in a can, and the damping that follows."""
 
     name: str
-    density: float  # [kg/m^3]
-    viscosity: float  # kinematic, nu [m^2/s]
-    law: str  # "thin layers", "creep" or "swing": the law with the largest part in the damping
-    slip: float  # slip rate of steady rolling by the laws themselves [rad/s]; 0 on level ground
-    carried: float  # share of the liquid that the film on the wall can hold there; beyond 1 all of it can go round
+    density: float
+    """Density rho [kg/m^3]."""
+    viscosity: float
+    """Kinematic viscosity nu [m^2/s]."""
+    law: str
+    """"thin layers", "creep" or "swing": the law with the largest part in the damping."""
+    slip: float
+    """Slip rate of steady rolling by the laws themselves [rad/s]; 0 on level ground."""
+    carried: float
+    """Share of the liquid that the film on the wall can hold at that rate; 1 or more is all."""
     damping: Damping
 
     def __str__(self) -> str:
@@ -98,17 +122,19 @@ def liquid(
     gravity: float = GRAVITY,
     drag: float = 0.0,
 ) -> Scene:
-    """Return the scene of a can with a real liquid in it, whose damping follows from viscosity and geometry.
+    """Return the scene of a can with a real liquid in it, whose damping follows from its viscosity.
 
-    `name` is "water", "beer", "olive oil", "glycerol" or "honey", at 20 degrees Celsius; `density` [kg/m^3] and
-    kinematic `viscosity` [m^2/s] replace its own. `incline` is in [rad], `fill` is h/2a of eq. (32), less than 1;
-    `drag` [kg/m] is that of the air. `liquid_in` has the numbers that were used.
+    `name` is "water", "beer", "olive oil", "glycerol" or "honey", at 20 degrees Celsius; `density`
+    [kg/m^3] and kinematic `viscosity` [m^2/s] replace its own. `incline` is in [rad], `fill` is
+    h/2a of eq. (32), less than 1; `drag` [kg/m] is that of the air. `liquid_in` has the numbers
+    that were used.
 
-    A `LiquidWarning` says that the damping is an order of magnitude: at the terminal speed a film on the wall can
-    hold a third of the liquid, the centrifugal acceleration exceeds g cos(alpha), or the damping is for other rates.
+    A `LiquidWarning` says that the damping is only an order of magnitude: at the terminal speed a
+    film on the wall can hold a third of the liquid, the centrifugal acceleration exceeds
+    g cos(alpha), or the damping is for other rates.
 
     Raises:
-      ParameterError: if a parameter is not allowed, the can is full, or the layers would be turbulent.
+      ParameterError: if a parameter is invalid, the can is full, or the layers would be turbulent.
     """
     used = liquid_in(name, incline, fill, can, density, viscosity, gravity)
     scene = sliding(incline, fill, can, used.density, gravity, used.damping, drag)
@@ -116,9 +142,12 @@ def liquid(
         speed = scene.terminal_speed()
     except NoEquilibriumError:  # none on so steep an incline
         speed = 0.0
-    spread = f"at its terminal speed of {speed:.2g} m/s" if centrifugal_ratio(scene, speed) > 1 else ""
-    if reason := lump_warning(name, scene, abs(speed) / scene.can.radius, spread):
-        warn_of_liquid.get()(reason, LiquidWarning, stacklevel=3)
+    spread = ""
+    if centrifugal_ratio(scene, speed) > 1:
+        spread = f"at its terminal speed of {speed:.2g} m/s"
+    warning = lump_warning(name, scene, abs(speed) / scene.can.radius, spread)
+    if warning:
+        warn_of_liquid.get()(warning, LiquidWarning, stacklevel=3)
     return scene
 
 
@@ -131,68 +160,193 @@ def liquid_in(
     viscosity: float | None = None,
     gravity: float = GRAVITY,
 ) -> Liquid:
-    """Return the liquid of the scene that `liquid` makes with the same arguments, with the same errors."""
-    # Liquid helium has a viscosity of 2e-8, and pitch of 2e5.
-    own = LIQUIDS[require.choice("liquid", name, NAMES)]
-    density = own.density if density is None else require.positive("density", density, "kg/m^3")
-    nu = own.viscosity if viscosity is None else require.within("viscosity", viscosity, 1e-9, 1e6, "m^2/s")
-    free = sliding(incline, fill, can, density, gravity)
-    load, a, length = free.load, free.can.radius, free.can.length
-    if load.offset == 0 or free.gravity == 0:
-        raise ParameterError(
-            "the damping of a liquid is known where it fills the can in part: fill must be less than 1 and gravity "
-            f"more than 0, got fill = {fill!r} and gravity = {free.gravity!r} m/s^2"
-        )
-    shape = segment(require.number("fill", fill))
-    moment = shape.area * (shape.inertia + shape.offset**2)  # second moment of the wetted area of an end, over a^4
-    arc = 2 * shape.half_angle
-    layers = density * a**3 * math.sqrt(nu) * (WALL * math.sqrt(arc) * length + ENDS * moment * a)
-    creep = 8 / math.pi * density * nu * a**2 * length * math.log(2 / _EDGE)
-    omega = math.sqrt(load.moment * free.gravity / free.oscillator.base)
-    swinging = density * math.sqrt(nu * omega / 2) * a**3 * (arc * length + 2 * moment * a)
+    """Return the liquid of the scene that `liquid` makes with the same arguments.
 
-    torque = min(abs(free.downhill_weight) * a, load.moment * free.gravity)  # the latter is all that the load can hold
-    steady = min((torque / layers) ** (2 / 3), torque / creep)
-    wide = (swinging / layers) ** 2 if swinging > creep else 0.0
-    slip = max(steady, wide)
-    drag = max(creep, layers * math.sqrt(slip))  # torque over slip rate there
-    rolled = min(1.0, steady / (DECADE[0] * wide)) if wide > 0 else 1.0
-    curved = min(_CURVED * rolled, 1 - creep / drag)  # the torque is nowhere less than that of creep
-    if curved > 0 and (reynolds := slip * a * arc * a / nu) > 1e6:  # of the layer at its end, whatever the wall
+    Raises:
+      ParameterError: as `liquid`.
+    """
+    properties = _properties(name, density, viscosity)
+    free = sliding(incline, fill, can, properties.density, gravity)
+    if free.load.offset == 0 or free.gravity == 0:
         raise ParameterError(
-            f"the layer on the wall is turbulent (Reynolds number {reynolds:.2g}): the viscosity is too small or the "
-            f"can too fast, got {nu:.4g} m^2/s in {free!r}"
+            "the damping of a liquid is known where it fills the can in part: fill must be less "
+            f"than 1 and gravity more than 0, got fill = {fill!r} and "
+            f"gravity = {free.gravity!r} m/s^2"
         )
-    holds = DECADE[0] * slip * curved / _CURVED, max(DECADE[1] * slip, (creep / layers) ** 2)
-    coats_at = (_CARRIED * shape.area * a / FILM_LOAD) ** 2 * free.gravity / (nu * a)
-    damping = Damping((1 - curved) * drag, curved * drag / slip if curved > 0 else 0.0, holds=holds, coats_at=coats_at)
-    law = "swing" if rolled < 1 else "thin layers" if drag > creep else "creep"
-    carried = FILM_LOAD * math.sqrt(nu * a * steady / free.gravity) / (shape.area * a)
-    return Liquid(name, density, nu, law, steady, carried, damping)
+    shape = segment(require.fill(fill))
+    laws = _laws(free, shape, properties)
+    steady_rate = _steady_slip_rate(free, laws)
+    fitted = _fit(laws, steady_rate)
+    if fitted.curved > 0:
+        _require_laminar(free, shape, properties, fitted.rate)
+    film = _film(free, shape, properties)
+    quadratic = 0.0
+    if fitted.curved > 0:
+        quadratic = fitted.curved * fitted.secant / fitted.rate
+    # The less it is curved, the lower the rates for which it is valid: those of creep begin at 0,
+    # and end where thin layers would drag as much.
+    lowest = DECADE[0] * fitted.rate * fitted.curved / _CURVED
+    highest = max(DECADE[1] * fitted.rate, (laws.creep / laws.layers) ** 2)
+    damping = Damping(
+        linear=(1 - fitted.curved) * fitted.secant,
+        quadratic=quadratic,
+        valid_rates=(lowest, highest),
+        coating_rate=(_CARRIED / film) ** 2,
+    )
+    return Liquid(
+        name,
+        properties.density,
+        properties.viscosity,
+        law=fitted.law,
+        slip=steady_rate,
+        carried=film * math.sqrt(steady_rate),
+        damping=damping,
+    )
+
+
+def _properties(name: str, density: float | None, viscosity: float | None) -> Properties:
+    """Return the properties of a liquid, or those that are given instead."""
+    handbook = LIQUIDS[require.choice("liquid", name, NAMES)]
+    if density is None:
+        density = handbook.density
+    if viscosity is None:
+        viscosity = handbook.viscosity
+    return Properties(
+        require.positive("density", density, "kg/m^3"),
+        # Liquid helium has a viscosity of 2e-8 m^2/s, and pitch of 2e5.
+        require.within("viscosity", viscosity, 1e-9, 1e6, "m^2/s"),
+    )
+
+
+class _Laws(NamedTuple):
+    """The torques by which a can drags its liquid along at a slip rate W."""
+
+    layers: float  # of thin layers in a can that rolls on, divided by W^1.5 [N m s^1.5]
+    creep: float  # divided by W [N m s]
+    swing: float  # of layers in a can that swings, divided by W [N m s]
+
+
+def _laws(free: Scene, shape: Segment, properties: Properties) -> _Laws:
+    """Return the three laws for the liquid of a scene without damping.
+
+    The liquid wets an arc of the wall, 2 beta, and an area of each end whose second moment about
+    the axis is S = (I_axis/m) A. Then
+
+        layers = rho sqrt(nu) (WALL a^3 sqrt(2 beta) L + ENDS S),
+        creep  = (8/pi) rho nu a^2 L ln(2/_EDGE),
+        swing  = rho sqrt(nu omega/2) (2 beta a^3 L + 2 S).
+
+    The layers on the ends are those of discs that are wet all round, of which the wetted share
+    counts. Creep is the wall shear 4 rho nu W/(pi sin(theta)) of Stokes flow in a half disc, summed
+    up to the edges; for other fills it is an estimate. In `swing`, omega is the frequency of small
+    swings on level ground.
+    """
+    rho, nu = properties
+    a = free.can.radius
+    length = free.can.length
+    arc = 2 * shape.half_angle
+    S = a**4 * shape.area * (shape.inertia + shape.offset**2)
+    omega = math.sqrt(free.load.moment * free.gravity / free.oscillator.base)
+    return _Laws(
+        layers=rho * math.sqrt(nu) * (WALL * a**3 * math.sqrt(arc) * length + ENDS * S),
+        creep=8 / math.pi * rho * nu * a**2 * length * math.log(2 / _EDGE),
+        swing=rho * math.sqrt(nu * omega / 2) * (arc * a**3 * length + 2 * S),
+    )
+
+
+def _steady_slip_rate(free: Scene, laws: _Laws) -> float:
+    """Return the slip rate of steady rolling [rad/s]: where the larger law has the torque.
+
+    The torque is m_t g a sin(alpha), but at most m g b, which is all that the load can exert.
+    """
+    torque = min(abs(free.downhill_weight) * free.can.radius, free.load.moment * free.gravity)
+    return min((torque / laws.layers) ** (2 / 3), torque / laws.creep)
+
+
+class _Fit(NamedTuple):
+    """A polynomial with the torque `secant` W (1 - curved + curved W/rate)."""
+
+    rate: float  # slip rate of the fit [rad/s]
+    secant: float  # torque divided by the slip rate there [N m s]
+    curved: float  # share of the quadratic term in that torque
+    law: str  # the law with the largest part
+
+
+def _fit(laws: _Laws, steady_rate: float) -> _Fit:
+    """Return the polynomial that stands for the laws in a can that rolls steadily at a slip rate.
+
+    Both kinds of layers drag alike at (swing/layers)^2. A can that hardly rolls is fitted there,
+    the less curved the slower it rolls: a swing's torque is proportional to the slip rate.
+    """
+    swing_rate = 0.0
+    if laws.swing > laws.creep:
+        swing_rate = (laws.swing / laws.layers) ** 2
+    rate = max(steady_rate, swing_rate)
+    secant = max(laws.creep, laws.layers * math.sqrt(rate))
+    rolling_share = 1.0
+    if swing_rate > 0:
+        rolling_share = min(1.0, steady_rate / (DECADE[0] * swing_rate))
+    # So that the torque is nowhere less than that of creep:
+    curved = min(_CURVED * rolling_share, 1 - laws.creep / secant)
+    law = "creep"
+    if rolling_share < 1:
+        law = "swing"
+    elif secant > laws.creep:
+        law = "thin layers"
+    return _Fit(rate, secant, curved, law)
+
+
+def _require_laminar(free: Scene, shape: Segment, properties: Properties, slip_rate: float) -> None:
+    """Check that a layer on the wall is not turbulent at its end, by (W a) (2 beta a)/nu."""
+    arc = 2 * shape.half_angle
+    reynolds = slip_rate * arc * free.can.radius**2 / properties.viscosity
+    if reynolds > _TURBULENT:
+        raise ParameterError(
+            f"the layer on the wall is turbulent (Reynolds number {reynolds:.2g}): the viscosity "
+            f"is too small or the can too fast, got {properties.viscosity:.4g} m^2/s in {free!r}"
+        )
+
+
+def _film(free: Scene, shape: Segment, properties: Properties) -> float:
+    """Return the share of the liquid that a film on the wall can hold, divided by sqrt(W).
+
+    It is FILM_LOAD a sqrt(nu a/g)/A, with the area A of the liquid's cross section.
+    """
+    a = free.can.radius
+    largest_area = FILM_LOAD * a * math.sqrt(properties.viscosity * a / free.gravity)
+    return largest_area / (a**2 * shape.area)
 
 
 def lump_warning(name: str, scene: Scene, slip: float, spread: str, turns: float = math.inf) -> str | None:
-    """Return why a liquid that slips by up to `slip` [rad/s] is no lump, in one sentence; None if it is one.
+    """Return why a liquid that slips by up to `slip` [rad/s] is no lump, in one sentence.
 
-    The text `spread` says where or when `centrifugal_ratio` is more than 1, if anywhere. The can has turned by so many
-    `turns`: a film grows with the wall that has come up.
+    It is None if the liquid is a lump. `spread` is a text that says where or when
+    `centrifugal_ratio` is more than 1, or empty. The can has turned by so many `turns`: a film
+    grows with the wall that has come up.
     """
-    if scene.damping_law.holds is None:
+    if scene.damping_law.valid_rates is None:
         return None
-    reasons, (lowest, highest) = [], scene.damping_law.holds
+    lowest, highest = scene.damping_law.valid_rates
+    reasons = []
     if spread:
         exceeds = "the wall's centrifugal acceleration is more than g cos(alpha)"
         reasons.append(f"{spread} {exceeds}, which spreads it round the can")
-    carried = _CARRIED * math.sqrt(slip / scene.damping_law.coats_at) * min(1.0, turns)
+    carried = _CARRIED * math.sqrt(slip / scene.damping_law.coating_rate) * min(1.0, turns)
     if carried > _CARRIED:
         share = f"{100 * carried:.0f} %" if carried < 1 else "all"
-        reasons.append(f"it coats the can: at {slip:.3g} rad/s the film on the wall can hold {share} of it")
+        film = f"at {slip:.3g} rad/s the film on the wall can hold {share} of it"
+        reasons.append(f"it coats the can: {film}")
     if not lowest * (1 - 1e-9) <= slip <= highest:
-        meant = f"{lowest:.3g} to {highest:.3g} rad/s between can and liquid"
-        reasons.append(f"the damping is for {meant}, which slips by {slip:.3g} rad/s")
-    return f"{name} as one lump is an order of magnitude only: {'; '.join(reasons)}" if reasons else None
+        rates = f"{lowest:.3g} to {highest:.3g} rad/s between can and liquid"
+        reasons.append(f"the damping is for {rates}, which slips by {slip:.3g} rad/s")
+    if not reasons:
+        return None
+    return f"{name} as one lump is an order of magnitude only: {'; '.join(reasons)}"
 
 
 def centrifugal_ratio(scene: Scene, u_dot: np.ndarray | float) -> np.ndarray | float:
-    """Return the centrifugal acceleration at the wall of a can with a speed [m/s], u_dot^2/a, over g cos(alpha)."""
+    """Return u_dot^2/(a g cos(alpha)) for a speed [m/s].
+
+    It is the centrifugal acceleration at the wall, divided by the weight's towards the incline.
+    """
     return np.square(u_dot) / (scene.can.radius * scene.gravity * math.cos(scene.incline))

@@ -156,7 +156,7 @@ class RecordMaker:
         record = self.record
         slip_rate = equations.slip_rate(self._scene, motion.phi_dot, motion.u_dot)
         record.largest_slip_rate = _largest(record.largest_slip_rate, slip_rate)
-        if self._scene.damping_law.holds is not None and record.no_lump_at == math.inf:
+        if self._scene.damping_law.valid_rates is not None and record.no_lump_at == math.inf:
             spread = np.flatnonzero(centrifugal_ratio(self._scene, motion.u_dot) > 1)
             if len(spread) > 0:
                 record.no_lump_at = float(motion.time[spread[0]])
@@ -278,7 +278,7 @@ def _slip_reasons(record: Record) -> list[str]:
 
 def _no_lump(record: Record) -> tuple[str, ...]:
     """Return why the liquid of a scene is no lump in this motion, in one sentence, if it is none."""
-    if record.scene.damping_law.holds is None:
+    if record.scene.damping_law.valid_rates is None:
         return ()
     spread = f"from t = {record.no_lump_at:.6g} s on" if record.no_lump_at < math.inf else ""
     turns = record.largest_distance / (math.tau * record.scene.can.radius)

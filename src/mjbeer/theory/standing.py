@@ -1,8 +1,9 @@
-"""A standing can with liquid in it: the slosh of its free surface, in the exact linear theory without viscosity.
+"""A standing can with liquid in it: the slosh of its free surface, in the exact linear theory.
 
-The modes of a liquid of radius R and height h vary as J1(xi r/R) cos(angle) with J1'(xi) = 0. Each acts on the can like
-a pendulum, the rest like a rigid body. Heights z are above the centroid of the liquid at rest. (H. N. Abramson, ed.,
-"The Dynamic Behavior of Liquids in Moving Containers", NASA SP-106, 1966, chapters 2 and 6.)
+The liquid has no viscosity, a radius R and a height h. Its modes vary as J1(xi r/R) cos(angle) with
+J1'(xi) = 0. Each acts on the can like a pendulum, the rest like a rigid body. Heights z are above
+the centroid of the liquid at rest. (H. N. Abramson, ed., "The Dynamic Behavior of Liquids in Moving
+Containers", NASA SP-106, 1966, chapters 2 and 6.)
 """
 
 import functools
@@ -18,18 +19,37 @@ from mjbeer.theory.can import Can
 from mjbeer.theory.liquid import LIQUIDS, NAMES
 from mjbeer.theory.scene import GRAVITY
 
-QUANTITATIVE, INDICATIVE = 0.1, 0.3
-"""Elevations of the surface at the wall, over the radius, up to which linear theory gives numbers, and a picture."""
+QUANTITATIVE = 0.1
+"""Elevation of the surface at the wall, divided by R, up to which linear theory gives numbers."""
+INDICATIVE = 0.3
+"""The elevation up to which it gives a picture."""
 MOST_MODES = 5
-SERIES = 4000  # terms of the infinite sums, which fall as the fourth power or faster: the rest is below 1e-13
+SERIES = 4000
+"""Terms of the infinite sums, which fall as the fourth power or faster: the rest is below 1e-13."""
 
 
 class Reaction(NamedTuple):
-    """The forces on the liquid per unit of acceleration of the can, about the liquid's centroid at rest."""
+    """The forces on the liquid per unit of acceleration of the can, about its centroid at rest."""
 
-    force: np.ndarray | float  # per sideways acceleration, F_X [kg]
-    coupling: np.ndarray | float  # force per angular, and moment per sideways acceleration, F_Theta = M_X [kg m]
-    moment: np.ndarray | float  # per angular acceleration about a level axis, M_Theta [kg m^2]
+    force: np.ndarray | float
+    """Force per sideways acceleration, F_X [kg]."""
+    coupling: np.ndarray | float
+    """Force per angular acceleration, and moment per sideways one, F_Theta = M_X [kg m]."""
+    moment: np.ndarray | float
+    """Moment per angular acceleration about a level axis, M_Theta [kg m^2]."""
+
+
+class _Pendulums(NamedTuple):
+    """The pendulums that stand for the first modes; every array has shape (count,)."""
+
+    mass: np.ndarray  # m_n [kg]
+    bob: np.ndarray  # height z_n above the centroid of the liquid at rest [m]
+    length: np.ndarray  # L_n [m]
+
+    @property
+    def pivot(self) -> np.ndarray:
+        """Return the heights p_n of the pivots above the centroid of the liquid at rest [m]."""
+        return self.bob + self.length
 
 
 @dataclass(frozen=True)
@@ -37,46 +57,55 @@ class Standing:
     """A can that stands, with a liquid in it whose surface is free.
 
     Raises:
-      ParameterError: if one of the values is not allowed.
+      ParameterError: if one of the values is invalid.
     """
 
     can: Can
     fill: float
-    """Height of the liquid over the can's length."""
+    """Height of the liquid divided by the can's length."""
     name: str
     density: float
     """Density of the liquid [kg/m^3]."""
     viscosity: float
     """Kinematic viscosity nu [m^2/s]."""
     modes: int = 1
-    """Number of modes that move in the model, unless over-damped (see `moving_modes`); with 0 the liquid is solid."""
+    """Number of modes that move in the model, unless they are over-damped (see `moving_modes`).
+
+    With 0 the liquid is solid."""
     damping_ratio: float | None = None
-    """Damping of every mode over the critical one, with which none moves; None: what the layers on the walls give."""
+    """Damping of every mode divided by the critical one; with 1 none moves.
+
+    None: what the layers on the walls give."""
     gravity: float = GRAVITY
     """Acceleration of gravity [m/s^2]."""
 
     def __post_init__(self) -> None:
-        require.instance("can", self.can, Can)
-        if not self.can.mass * self.can.inertia > 0:
-            raise ParameterError(f"a standing can must have mass and inertia, as Can.sheet_metal(), got {self.can!r}")
+        can = require.instance("can", self.can, Can)
+        if not can.mass * can.inertia > 0:
+            needed = "a standing can must have mass and inertia, as Can.sheet_metal()"
+            raise ParameterError(f"{needed}, got {can!r}")
         fill = require.number("fill", self.fill)
         if not 0 < fill < 1:
-            raise ParameterError(
-                f"fill must be a fraction between 0 and 1 (50 % is 0.5): a full can has no free surface, got {fill!r}"
-            )
+            allowed = "fill must be a fraction between 0 and 1 (50 % is 0.5)"
+            raise ParameterError(f"{allowed}: a full can has no free surface, got {fill!r}")
+        depth = fill * can.length / can.radius
         # In thinner films viscosity is everywhere.
-        require.within("height of the liquid over the radius", fill * self.can.length / self.can.radius, 0.05, 50.0)
-        ratio = self.damping_ratio
-        vars(self).update(
+        require.within("height of the liquid over the radius", depth, 0.05, 50.0)
+        damping_ratio = self.damping_ratio
+        if damping_ratio is not None:
+            damping_ratio = require.within("damping_ratio", damping_ratio, 0, 1)
+        require.set_fields(
+            self,
             fill=fill,
             density=require.positive("density", self.density, "kg/m^3"),
             viscosity=require.non_negative("viscosity", self.viscosity, "m^2/s"),
             modes=_checked_count("modes", self.modes, MOST_MODES),
-            damping_ratio=None if ratio is None else require.within("damping_ratio", ratio, 0, 1),
+            damping_ratio=damping_ratio,
             gravity=require.within("gravity", self.gravity, *require.GRAVITY, "m/s^2"),
         )
         require.within("mass of the liquid", self.mass, *require.MASS, "kg")
-        require.within("mass of the can", self.can.mass, self.mass / require.RATIO, self.mass * require.RATIO, "kg")
+        lightest, heaviest = (ratio * self.mass for ratio in require.RATIO)
+        require.within("mass of the can", can.mass, lightest, heaviest, "kg")
 
     @property
     def height(self) -> float:
@@ -90,98 +119,121 @@ class Standing:
 
     @property
     def held_inertia(self) -> float:
-        """Return the moment of inertia about a level axis of the liquid under a lid on its surface, I_F [kg m^2]."""
-        radius, xi = self.can.radius, _roots()
-        series = float(np.sum(np.tanh(xi * self.height / (2 * radius)) / (xi**3 * (xi**2 - 1))))
-        return self.mass * (self.height**2 / 12 - 0.75 * radius**2 + 16 * radius**3 / self.height * series)
+        """Return the moment of inertia of the liquid under a lid on its surface, I_F [kg m^2].
+
+        It is that about a level axis through the centroid.
+        """
+        radius = self.can.radius
+        xi = _roots()
+        terms = np.tanh(xi * self.height / (2 * radius)) / (xi**3 * (xi**2 - 1))
+        walls = 16 * radius**3 / self.height * float(np.sum(terms))
+        return self.mass * (self.height**2 / 12 - 0.75 * radius**2 + walls)
 
     @property
     def moving_modes(self) -> int:
-        """Return the number of modes that move in the model: `modes`, or 0 if the first one is over-damped.
+        """Return the number of modes that move in the model.
 
-        The first mode is the most damped one. Where it does not swing, the layers on the walls fill the liquid, which
-        then moves with the can as a solid.
+        It is `modes`, or 0 if the first mode, which is the most damped one, is over-damped. The
+        layers on the walls then fill the liquid, and it moves with the can as a solid.
         """
         if self.modes == 0 or self.damping_ratios(1)[0] >= 1:
             return 0
         return self.modes
 
     def frequencies(self, count: int | None = None) -> np.ndarray:
-        """Return the natural frequencies of the first `count` modes in a can that is held [rad/s], shape (count,).
+        """Return the natural frequencies of the first `count` modes [rad/s], shape (count,).
 
-        They are those without damping. By default, here and below, the modes are those that move in the model, which
-        are none in a liquid that is over-damped; with a `count` they are those of theory, whether they move or not.
+        They are those without damping, in a can that is held. By default, here and below, the
+        modes are those that move in the model, of which an over-damped liquid has none; with a
+        `count` they are those of theory, whether they move or not.
         """
-        _, _, length = self._pendulums(count)
-        return np.sqrt(self.gravity / length)
+        return np.sqrt(self.gravity / self._pendulums(count).length)
 
     def slosh_masses(self, count: int | None = None) -> np.ndarray:
         """Return the masses of the pendulums [kg], shape (count,)."""
-        return self._pendulums(count)[0]
+        return self._pendulums(count).mass
 
     def pivots(self, count: int | None = None) -> np.ndarray:
-        """Return the heights of the pendulums' pivots above the inside of the bottom [m], shape (count,)."""
-        _, bob, length = self._pendulums(count)
-        return self.height / 2 + bob + length
+        """Return the heights of the pendulums' pivots above the bottom [m], shape (count,)."""
+        return self.height / 2 + self._pendulums(count).pivot
 
     def damping_ratios(self, count: int | None = None) -> np.ndarray:
-        """Return the damping of the modes over the critical one, shape (count,).
+        """Return the damping of the modes divided by the critical one, shape (count,).
 
-        Thin layers on wall and bottom take rho u^2 sqrt(nu omega/2)/2 where a mode has the velocity u along them.
+        Thin layers on wall and bottom take the power rho u^2 sqrt(nu omega/2)/2 per area where a
+        mode has the velocity u along them.
         """
-        radius, xi = self.can.radius, self._xi(count)
+        xi = self._xi(count)
         if self.damping_ratio is not None:
             return np.full(len(xi), self.damping_ratio)
+        radius = self.can.radius
         depth = self.height / radius
-        inverse_sinh = 2 * np.exp(-2 * xi * depth) / -np.expm1(-4 * xi * depth)
-        layers = (xi**2 + 1) / (xi**2 - 1) + 2 * xi * (1 - depth) * inverse_sinh
-        return np.sqrt(self.viscosity / (2 * self.frequencies(count))) / (2 * radius) * layers
+        inverse_sinh = 2 * np.exp(-2 * xi * depth) / -np.expm1(-4 * xi * depth)  # of 2 xi depth
+        walls = (xi**2 + 1) / (xi**2 - 1) + 2 * xi * (1 - depth) * inverse_sinh
+        layer = np.sqrt(self.viscosity / (2 * self.frequencies(count)))
+        return layer / (2 * radius) * walls
 
     def elevations(self, count: int | None = None) -> np.ndarray:
-        """Return how high the surface rises at the wall, over R and the sine of each pendulum's angle, (count,)."""
+        """Return how high the surface rises at the wall in each mode, shape (count,).
+
+        It is divided by R and by the sine of the pendulum's angle.
+        """
         return 2 / (self._xi(count) ** 2 - 1)
 
     def reaction(self, omega: float | np.ndarray) -> Reaction:
-        """Return force and moment of the liquid alone in a can that is shaken with a frequency `omega` [rad/s].
+        """Return force and moment of the liquid alone in a can shaken at `omega` [rad/s].
 
-        There is no damping. X is sideways, Theta about the level axis across it. Weight is included: a tilted liquid's
-        metacentric moment is -g sum(m_n L_n) = -rho g pi R^4/4 per angle.
+        There is no damping. X is sideways, Theta about the level axis across it. Weight is
+        included: a tilted liquid's metacentric moment is -g sum(m_n L_n) = -rho g pi R^4/4 per
+        angle.
 
         Raises:
           ParameterError: if a frequency is not between 1e-6 and 1e6.
         """
-        for each in np.atleast_1d(np.asarray(omega, object)):
-            require.within("omega", each, 1e-6, 1e6, "rad/s")
-        omega = np.asarray(omega, float)
-        mass, bob, length = self._pendulums(SERIES)
-        square = omega[..., None] ** 2
-        share = mass * square / (self.gravity / length - square)
-        arm = bob + self.gravity / square
-        force, coupling, moment = (np.sum(share * arm**power, axis=-1)[()] for power in range(3))
+        for frequency in np.atleast_1d(np.asarray(omega, object)):
+            require.within("omega", frequency, 1e-6, 1e6, "rad/s")
+        square = np.asarray(omega, float)[..., None] ** 2
+        pendulums = self._pendulums(SERIES)
+        share = pendulums.mass * square / (self.gravity / pendulums.length - square)
+        arm = pendulums.bob + self.gravity / square
+        force = np.sum(share, axis=-1)[()]
+        coupling = np.sum(share * arm, axis=-1)[()]
+        moment = np.sum(share * arm**2, axis=-1)[()]
         return Reaction(self.mass + force, coupling, self.held_inertia + moment)
 
     def fixed_moments(self) -> np.ndarray:
-        """Return the moments of mass of the model in all, about the centroid: the zeroth, first and second one.
+        """Return the moments of mass of the whole model about the centroid, shape (3,).
 
-        The modes left out are fixed at their pivots, where slow motion has them: sum(m_n L_n) to the first moment
-        [kg m], sum(m_n (p_n^2 - z_n^2)) to the second [kg m^2]. If no mode moves, the liquid is a solid cylinder.
+        They are the zeroth [kg], the first [kg m] and the second one [kg m^2]. The modes left out
+        are fixed at their pivots, as in slow motion: they add sum(m_n L_n) to the first moment and
+        sum(m_n (p_n^2 - z_n^2)) to the second. If no mode moves, the liquid is a solid cylinder.
         """
         if self.moving_modes == 0:
-            return np.array([self.mass, 0.0, self.mass * (self.can.radius**2 / 4 + self.height**2 / 12)])
-        mass, bob, length = self._pendulums(SERIES)[:, self.moving_modes :]
-        second = self.held_inertia + np.sum(mass * ((bob + length) ** 2 - bob**2))
-        return np.array([self.mass, np.sum(mass * length), second])
+            second = self.mass * (self.can.radius**2 / 4 + self.height**2 / 12)
+            return np.array([self.mass, 0.0, second])
+        every = self._pendulums(SERIES)
+        fixed = _Pendulums(*(values[self.moving_modes :] for values in every))
+        first = np.sum(fixed.mass * fixed.length)
+        second = self.held_inertia + np.sum(fixed.mass * (fixed.pivot**2 - fixed.bob**2))
+        return np.array([self.mass, first, second])
 
     def _xi(self, count: int | None) -> np.ndarray:
-        return _roots()[: self.moving_modes if count is None else _checked_count("count", count, SERIES)]
+        """Return the xi of the first modes, shape (count,)."""
+        if count is None:
+            return _roots()[: self.moving_modes]
+        return _roots()[: _checked_count("count", count, SERIES)]
 
-    def _pendulums(self, count: int | None) -> np.ndarray:
-        """Return masses m_n [kg], heights z_n of the bobs above the centroid [m] and lengths L_n [m], (3, count)."""
-        radius, height, xi = self.can.radius, self.height, self._xi(count)
+    def _pendulums(self, count: int | None) -> _Pendulums:
+        """Return the pendulums of the first modes."""
+        radius = self.can.radius
+        height = self.height
+        xi = self._xi(count)
         tanh = np.tanh(xi * height / radius)
-        mass = self.mass * 2 * radius * tanh / (height * xi * (xi**2 - 1))
-        bob = height / 2 - 2 * radius / xi * np.tanh(xi * height / (2 * radius))
-        return np.array([mass, bob, radius / (xi * tanh)])
+        return _Pendulums(
+            mass=self.mass * 2 * radius * tanh / (height * xi * (xi**2 - 1)),
+            bob=height / 2 - 2 * radius / xi * np.tanh(xi * height / (2 * radius)),
+            length=radius / (xi * tanh),
+        )
 
 
 def standing(
@@ -194,44 +246,61 @@ def standing(
 ) -> Standing:
     """Return a can that stands, by default `Can.sheet_metal()`, with a liquid in it that sloshes.
 
-    `liquid` is a name that `mjbeer.liquid` knows; the others are fields of `Standing`. By default the damping follows
-    from the viscosity, for a clean surface: foam or dust doubles it.
+    `liquid` is a name that `mjbeer.liquid` knows; the others are fields of `Standing`. By default
+    the damping follows from the viscosity, for a clean surface: foam or dust doubles it.
 
-    A `LiquidWarning` says where the layers on the walls are not thin, so that the damping is an order of magnitude, and
-    where it is so large that the liquid does not slosh.
+    A `LiquidWarning` says that the layers on the walls are not thin, so that the damping is only an
+    order of magnitude, and whether it is so large that the liquid does not slosh.
 
     Raises:
-      ParameterError: if a parameter is not allowed.
+      ParameterError: if a parameter is invalid.
     """
     name = require.choice("liquid", liquid, NAMES)
     can = Can.sheet_metal() if can is None else can
-    standing_can = Standing(can, fill, name, *LIQUIDS[name], modes, damping_ratio, gravity)
+    density, viscosity = LIQUIDS[name]
+    standing_can = Standing(can, fill, name, density, viscosity, modes, damping_ratio, gravity)
     if modes > 0 and damping_ratio is None:
-        layer = math.sqrt(2 * standing_can.viscosity / standing_can.frequencies(1)[0]) / can.radius
-        if layer > 0.1:
-            thick = f"{name} is too thick for the damping of thin layers: that on the wall has {layer:.3g} radii"
-            thick += ", not 0.1 or less"
-            if standing_can.moving_modes == 0:
-                ratio = standing_can.damping_ratios(1)[0]
-                thick += f", and the liquid does not slosh: its damping is {ratio:.3g} times the critical one"
-            warn_of_liquid.get()(f"{thick}; give a damping_ratio", LiquidWarning, stacklevel=2)
+        _warn_of_thick_layers(standing_can)
     return standing_can
 
 
+def _warn_of_thick_layers(standing_can: Standing) -> None:
+    """Warn, where `standing` is called, if the damping of thin layers is not the liquid's."""
+    layer = math.sqrt(2 * standing_can.viscosity / standing_can.frequencies(1)[0])
+    radii = layer / standing_can.can.radius
+    if radii <= 0.1:
+        return
+    message = (
+        f"{standing_can.name} is too thick for the damping of thin layers: "
+        f"that on the wall has {radii:.3g} radii, not 0.1 or less"
+    )
+    if standing_can.moving_modes == 0:
+        ratio = standing_can.damping_ratios(1)[0]
+        message += ", and the liquid does not slosh: "
+        message += f"its damping is {ratio:.3g} times the critical one"
+    warn_of_liquid.get()(f"{message}; give a damping_ratio", LiquidWarning, stacklevel=3)
+
+
 def _checked_count(name: str, value: object, most: int) -> int:
-    if not isinstance(value, (int, np.integer)) or isinstance(value, bool) or not 0 <= value <= most:
-        raise ParameterError(f"{name} must be one of 0, 1, ... {most}, got {require.format_value(value)}")
+    whole = isinstance(value, (int, np.integer)) and not isinstance(value, bool)
+    if not whole or not 0 <= value <= most:
+        got = require.format_value(value)
+        raise ParameterError(f"{name} must be one of 0, 1, ... {most}, got {got}")
     return int(value)
 
 
 @functools.cache
 def _roots() -> np.ndarray:
-    """Return the first zeros xi > 0 of J1', shape (SERIES,), by Newton's method from McMahon's expansion."""
+    """Return the first zeros xi > 0 of J1', shape (SERIES,).
+
+    Newton's method finds them from McMahon's expansion.
+    """
     from scipy.special import jv  # its own zeros end at 1200
 
     beta = (np.arange(1, SERIES + 1) - 0.25) * math.pi
     xi = beta - 7 / (8 * beta)
     for _ in range(6):
-        derivative = jv(0, xi) - jv(1, xi) / xi  # J1'; Bessel's equation gives its own derivative
-        xi = xi - derivative / (-derivative / xi - (1 - 1 / xi**2) * jv(1, xi))
+        slope = jv(0, xi) - jv(1, xi) / xi  # J1'
+        curvature = -slope / xi - (1 - 1 / xi**2) * jv(1, xi)  # J1'', by Bessel's equation
+        xi = xi - slope / curvature
     return xi

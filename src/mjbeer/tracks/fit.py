@@ -30,7 +30,7 @@ _SIZES = {
     "bend": 5e-3, "scale": 0.02, "turned": 0.2,
 }  # fmt: skip
 """What is much of each value. Damping and a sliding load's incline count in their logarithms."""
-_WITHIN = {"incline": (-1.5, 1.5), "fill": (0.01, 0.99), "drag": (0.0, 1.0), "scale": (0.5, 2.0)}
+_WITHIN = {"incline": require.INCLINE, "fill": (0.01, 0.99), "drag": (0.0, 1.0), "scale": (0.5, 2.0)}
 _TRIED = {"fill": np.linspace(0.05, 0.95, 19), "damping": (0.55, 0.75, 1.3, 1.8), "phi0": np.linspace(-3, 3, 7)}
 """Values that are tried as starts. Incline, damping and release of a late track look alike, and two fills of ice."""
 _BEGUN = 16  # starts whose first round is fitted

@@ -12,6 +12,7 @@ import secrets
 import pytest
 
 import mjbeer
+from mjbeer.exceptions import ParameterError
 from mjbeer.paper.checks import Result
 from mjbeer.studies import study
 from mjbeer.studies.stability import stability_study
@@ -66,18 +67,33 @@ def test_what_must_be_is_what_is_compared(monkeypatch: pytest.MonkeyPatch) -> No
 
 
 def test_regions_reach_their_extremes() -> None:
-    """A number makes the same run every time."""
-    trials = [random_trial(number) for number in range(90 * len(REGIONS))]
-    assert random_trial(77) == trials[77]
-    of = {region.name: trials[place :: len(REGIONS)] for place, region in enumerate(REGIONS)}
+    """A number makes the same run every time, and what the domain refuses is a run as well."""
+    of: dict[str, list[Trial]] = {region.name: [] for region in REGIONS}
+    refused = dict.fromkeys(of, "")
+    for number in range(90 * len(REGIONS)):
+        name = REGIONS[number % len(REGIONS)].name
+        try:
+            of[name].append(random_trial(number))
+        except ParameterError as error:
+            refused[name] += f"{error}\n"
+    assert random_trial(77) == random_trial(77)
+    beyond = {
+        "steep": "incline",
+        "mass ratios": "mass of the can",
+        "fast rotation": "mass of the can",
+        "thin or full": "fill",
+    }
+    for name, quantity in beyond.items():
+        assert refused[name].count(f"{quantity} ") > 9, name
+    assert not refused["ordinary"] + refused["attached"]
     assert all(
         len(run.times) <= 2 and run.times[-1] > 0.99 * run.timestep * run.steps for run in of["single late sample"]
     )
     spans = {
         "fast rotation": (lambda run: abs(run.phi_dot0) * run.timestep, 0.1, 10),
         "contact friction": (lambda run: run.friction, 0.02, 5),
-        "mass ratios": (lambda run: run.scene.can.mass / run.scene.load.mass, 1e-3, 1e3),
-        "steep": (lambda run: math.degrees(run.scene.incline), -89.99, 89.99),
+        "mass ratios": (lambda run: run.scene.can.mass / run.scene.load.mass, 2e-3, 500),
+        "steep": (lambda run: math.degrees(run.scene.incline), -80, 80),
         "far angles": (lambda run: abs(run.phi0), 200, 5e3),
         "weak or strong gravity": (lambda run: run.scene.gravity, 1e-9, 5e2),
         "anything": (lambda run: run.scene.can.radius, 3e-3, 10),
@@ -89,6 +105,13 @@ def test_regions_reach_their_extremes() -> None:
         assert max(reached) >= high, name
     turns = [abs(run.phi_dot0) * run.timestep / (math.pi / 2) for run in of["resonance"]]
     assert sum(abs(turn - round(turn)) < 1e-9 for turn in turns) > 30
+
+
+def test_a_batch_counts_what_the_domain_refuses(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By the error of a scene, and nothing simulates it."""
+    monkeypatch.setattr(stability_study, "random_trial", lambda number: Trial(mjbeer.sliding(1.5 + number), 1.0))
+    monkeypatch.delattr(stability_study, "judge")
+    assert batch(7, 3) == {"error": 0, "kinds": {"outside the domain": {REFUSED: 3}}, "silent": []}
 
 
 def test_a_batch_counts_and_keeps_what_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -104,6 +127,7 @@ def test_a_batch_counts_and_keeps_what_is_wrong(monkeypatch: pytest.MonkeyPatch)
     ]
     outcomes = iter(ends)
     monkeypatch.setattr(stability_study, "judge", lambda _: next(outcomes))
+    monkeypatch.setattr(stability_study, "random_trial", lambda _: Trial(mjbeer.frozen(), 1.0))
     found = batch(SIZE, len(ends))
     assert [run["number"] - SIZE for run in found["silent"]] == [5]
     assert found["silent"][0]["trial"].startswith("Trial(scene=")

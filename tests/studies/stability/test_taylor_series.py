@@ -17,17 +17,17 @@ METAL = Can.sheet_metal()
 BESIDE = 1e-6
 FEW = 3e-15
 """A few roundings of an angle of some radians."""
-LIGHT_HOOP = Scene(Can.hoop(mass=0.2e-4), Load.point(0.2, 0.033), 0.0, "frozen")
-HEAVY_CAN = Scene(Can(0.033, 0.1, 1e3, 1.0), Load.point(0.1, 0.02), 0.1)
+LIGHT_HOOP = Scene(Can.hoop(mass=0.2e-3), Load.point(0.2, 0.033), 0.0, "frozen")
+HEAVY_CAN = Scene(Can(0.033, 0.1, 1e2, 0.1), Load.point(0.1, 0.02), 0.1)
 CASES: dict[str, tuple[Scene, float, float, float, float]] = {
     "sliding": (sliding(), 0.4, 1.0, 0.0, FEW),
     "sliding, metal, spun": (sliding(can=METAL), 0.4, 2.0, 3.0, FEW),
     "frozen": (frozen(), 0.4, 1.0, 0.0, FEW),
-    "frozen, steep, rolling up": (frozen(-1.57), 0.2, 1.0, 30.0, FEW),
+    "frozen, steep, rolling up": (frozen(-1.48), 0.2, 1.0, 30.0, FEW),
     "pendulum": (pendulum(), 0.4, 1.0, -2.0, FEW),
     "hoop": (hoop(), 0.3, 1.0, 0.0, FEW),
-    "hoop of 1e-4 of its load": (LIGHT_HOOP, 0.09, 1.5, 0.0, FEW),
-    "can of 1e4 of its load": (HEAVY_CAN, 0.3, 1.0, 0.0, FEW),
+    "hoop of 1e-3 of its load": (LIGHT_HOOP, 0.09, 1.5, 0.0, FEW),
+    "can of 1e3 of its load": (HEAVY_CAN, 0.3, 1.0, 0.0, FEW),
     # The spacing of doubles there is 1.8e-12.
     "1e4 rad away": (frozen(), 0.3, 1e4, 3.0, 1.8e-12),
     "1e5 rad/s": (sliding(can=METAL), 1e-4, 0.3, 1e5, FEW),

@@ -17,6 +17,7 @@ from typing import Any
 
 from rich.console import Console
 
+from mjbeer.exceptions import ParameterError
 from mjbeer.model.setting import supported
 from mjbeer.output import files
 from mjbeer.output.terminal import Table
@@ -34,6 +35,8 @@ UNFINISHED, FINISHED = "unfinished.jsonl", "stability.jsonl"
 """Files that have the study while it is measured, and when it is whole."""
 KNOWN, RANDOM = "cases", "search"
 """The groups of a study with known and with random cases."""
+OUTSIDE = "outside the domain"
+"""The kind of random trials whose scene, start or timestep the domain refuses, so that there is no model of them."""
 SIZE = 4 * len(REGIONS)
 """Number of random runs in a batch, which takes some seconds."""
 RUNS, FEW_RUNS = 3000, 250
@@ -49,9 +52,10 @@ _SEEDS = 10**9
 """Number of random runs among which a study draws its first one: development has seen next to none of them."""
 _READ = """
 A run is **right** if it is trusted, and phi and u/a stay within 0.01 rad of theory (relative beyond 1 rad), and within
-its tolerance if it has one. It is **refused** if it ends in an error that states the reason, and **doubted** if it
-carries a warning, right or wrong. It is **silent** if it is trusted and wrong: there must be none. Two theories that
-share no code judge a motion without damping; damped ones, liquids and attached cans have exact theory alone.
+its tolerance if it has one. It is **refused** if it ends in an error that states the reason, also if its scene is
+outside the domain, and **doubted** if it carries a warning, right or wrong. It is **silent** if it is trusted and
+wrong: there must be none. Two theories that share no code judge a motion without damping; damped ones, liquids and
+attached cans have exact theory alone.
 """
 """How to read the tables of the search."""
 
@@ -91,13 +95,17 @@ def try_case(case: KnownCase) -> dict[str, Any]:
 def batch(first: int, size: int = SIZE) -> dict[str, Any]:
     """Return how the random runs from the number `first` on ended; "error" counts those that are wrong and silent.
 
-    "kinds" has the counts by kind of model, with what judged the runs; "silent" has all that is known of those that
-    must not be.
+    "kinds" has the counts by kind of model, with what judged the runs, and counts those `OUTSIDE` the domain as
+    refused; "silent" has all that is known of those that must not be.
     """
     kinds: dict[str, Counter[str]] = {}
     silent = []
     for number in range(first, first + size):
-        trial = random_trial(number)
+        try:
+            trial = random_trial(number)
+        except ParameterError:
+            kinds.setdefault(OUTSIDE, Counter())[REFUSED] += 1
+            continue
         outcome = judge(trial)
         trusted = outcome.verdict == RIGHT
         counted = {
