@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from mjbeer import require
 from mjbeer.exceptions import LiquidWarning, ParameterError, UntrustedWarning
 from mjbeer.model.joints import to_coordinates
+from mjbeer.model.mujoco_library import quiet
 from mjbeer.model.setting import FRICTION, OWN, Integrator, Rolling, Setting
 from mjbeer.simulation.methods import mechanics
 from mjbeer.simulation.run import Run, diagnose_run, turns_rounding
@@ -133,9 +134,10 @@ def integrate(scene: Scene, phi0: float, phi_dot0: float, setting: Setting, time
     """
     near_phi0 = reduced(phi0)
     checked = _check_times(setting, times)
-    stepped = kept_model(mechanics(scene, setting))
-    start = stepped.initial_state(near_phi0, phi_dot0)
-    solution = solve(stepped, setting, start, checked, math.inf, turns_rounding(phi0))
+    with quiet():  # once: the steps and models inside then find it so
+        stepped = kept_model(mechanics(scene, setting))
+        start = stepped.initial_state(near_phi0, phi_dot0)
+        solution = solve(stepped, setting, start, checked, math.inf, turns_rounding(phi0))
     motion = to_coordinates(stepped.model, scene, solution.states, checked)
     stepped.check(motion)
     samples = np.searchsorted(checked, times)
