@@ -205,15 +205,15 @@ def segment(fill: float) -> Segment:
     sine_of_twice = 2 * sine * cosine
     area = beta - sine_of_twice / 2
     offset = 2 * sine**3 / (3 * area)
-    # Eq. (36) has I_axis = m a^2 (1 + lack)/2. It adds the mean squares of both coordinates, of
-    # which the one across the line of symmetry is (1 - lack)/4.
-    lack = sine_of_twice * sine**2 / (3 * area)
+    # By eq. (36), I_axis = m a^2 (1 + excess)/2, more than that of a full can. I_axis adds the mean
+    # squares of both coordinates; the one across the line of symmetry is (1 - excess)/4.
+    excess = sine_of_twice * sine**2 / (3 * area)
     return Segment(
         half_angle=beta,
         area=area,
         offset=offset,
-        inertia=(1 + lack) / 2 - offset**2,
-        width=(1 - lack) / 4,
+        inertia=(1 + excess) / 2 - offset**2,
+        width=(1 - excess) / 4,
     )
 
 
