@@ -32,7 +32,7 @@ def world() -> mujoco.MjModel:
     spec.worldbody.add_light(name="sun", pos=[0, -1, 2], dir=[0, 0.5, -1])
     spec.worldbody.add_geom(name="slope", type=mujoco.mjtGeom.mjGEOM_PLANE, size=[0, 0, 0.1], quat=turned(INCLINE))
     for lane, (name, can) in enumerate(CANS.items()):
-        u, _ = can.start(PHI0[name], 0.0)
+        u, _ = can.initial_axis(PHI0[name], 0.0)
         # A hair inside the slope, so that rounding does not leave it hanging in the air.
         pos = u * DOWN + (1 - 1e-9) * METAL.radius * NORMAL + [0, lane * APART, 0]
         mjbeer.attach(spec, can, pos=pos, quat=turned(INCLINE + u / METAL.radius), prefix=f"{name}-")
@@ -44,7 +44,7 @@ def errors() -> dict[str, float]:
     model = world()
     data = mujoco.MjData(model)
     swing = data.joint("sliding-swing")
-    swing.qpos = PHI0["sliding"] - CANS["sliding"].start(PHI0["sliding"], 0.0)[0] / METAL.radius
+    swing.qpos = PHI0["sliding"] - CANS["sliding"].initial_axis(PHI0["sliding"], 0.0)[0] / METAL.radius
     times, angles = [], {name: [] for name in CANS}
     while data.time < DURATION:
         mujoco.mj_forward(model, data)

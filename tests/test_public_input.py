@@ -62,7 +62,7 @@ FRESH = {"parent": mujoco.MjSpec}
 """Those that are changed by what gets them."""
 COMPUTED = ("can mass ", "can inertia ", "load mass ", "load inertia ", "rate of ", "mass of ", "height of ")
 """Beginnings of errors that name a quantity which follows from what came."""
-NOT_ASKED = ("start", "replace", "plot", "to_csv", "to_dataframe", "video")
+NOT_ASKED = ("initial_axis", "replace", "plot", "to_csv", "to_dataframe", "video")
 """Methods with arguments, or which draw or write: they are called by themselves."""
 
 

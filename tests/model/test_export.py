@@ -188,7 +188,7 @@ def test_what_cannot_be_written_is_refused(
 def test_sensors_have_the_values_of_the_letters(name: str, rolling: Rolling) -> None:
     """And the kinetic energy, or none where a constant force stands for a weight."""
     scene, phi, phi_dot = SCENES[name], 1.1, -7.0
-    model, (u, u_dot) = rolling_spec(scene, Setting(rolling), visuals=True).compile(), scene.start(phi, phi_dot)
+    model, (u, u_dot) = rolling_spec(scene, Setting(rolling), visuals=True).compile(), scene.initial_axis(phi, phi_dot)
     data = mujoco.MjData(model)
     data.qpos[:], data.qvel[:] = np.split(initial_state(model, scene, phi, phi_dot), 2)
     mujoco.mj_forward(model, data)

@@ -333,7 +333,7 @@ def test_whole_turns_at_the_start_change_nothing_but_the_angle(rolling: Rolling,
     assert far.phi == pytest.approx(near.phi + turns, rel=0, abs=rounding)
     assert far.roll == pytest.approx(near.roll + turns, rel=0, abs=rounding)
     assert far.u / METAL.radius == pytest.approx(near.u / METAL.radius + turns, rel=0, abs=rounding)
-    assert far.u[0] == pytest.approx(scene.start(phi0, 0.0)[0], rel=1e-15)
+    assert far.u[0] == pytest.approx(scene.initial_axis(phi0, 0.0)[0], rel=1e-15)
     assert far.error_estimate == pytest.approx(near.error_estimate, rel=1e-12, abs=rounding)
     assert far.error_estimate > 0
     error_far = error(far)

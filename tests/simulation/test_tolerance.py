@@ -182,7 +182,7 @@ def test_damped_motions_keep_to_the_tolerance(
     assume(stiffest * times[-1] < 2e3)  # DOP853 takes steps as short as that
     run = simulate(scene, times[-1], phi0, swing * unit, tolerance=tolerance, times=times)
     truth = exact(scene, times, phi0, swing * unit)
-    assert largest_error(run, truth, scene.can.radius, (phi0, scene.start(phi0, 0.0)[0])) <= tolerance
+    assert largest_error(run, truth, scene.can.radius, (phi0, scene.initial_axis(phi0, 0.0)[0])) <= tolerance
     assert run.error_estimate <= tolerance
     assert run.integrator == "DOP853"
 

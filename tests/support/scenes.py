@@ -40,5 +40,5 @@ def scenes(draw: st.DrawFn) -> Scene:
 
 def error(run: Run) -> float:
     """The largest error of phi and u/a at the samples of a run [rad], as a tolerance bounds it."""
-    start = run.phi0, run.scene.start(run.phi0, run.phi_dot0)[0]
+    start = run.phi0, run.scene.initial_axis(run.phi0, run.phi_dot0)[0]
     return largest_error(run, exact(run.scene, run.time, run.phi0, run.phi_dot0), run.scene.can.radius, start)

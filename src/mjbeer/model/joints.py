@@ -72,7 +72,7 @@ def rolling_coordinates(radius: float, u: Any, u_dot: Any, phi: Any, phi_dot: An
 
 def _start_values(scene: Scene, phi0: float, phi_dot0: float) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     """Return the position and the rate at a start of all joints that a model may have, by name."""
-    return _values(rolling_coordinates(scene.can.radius, *scene.start(phi0, phi_dot0), phi0, phi_dot0))
+    return _values(rolling_coordinates(scene.can.radius, *scene.initial_axis(phi0, phi_dot0), phi0, phi_dot0))
 
 
 def _values(motion: Coordinates) -> dict[str, tuple[np.ndarray, np.ndarray]]:

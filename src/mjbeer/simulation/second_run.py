@@ -32,7 +32,7 @@ def compare_uneven(run: Run) -> float:
     scene = run.scene
     motion = run.checkpoints
     phi0 = reduced(run.phi0)
-    u0, _ = scene.start(phi0, run.phi_dot0)
+    u0, _ = scene.initial_axis(phi0, run.phi_dot0)
     stepped = SteppedModel(mechanics(scene, run.setting, uneven=True))
     start = stepped.initial_state(phi0 + _START_OFFSET, run.phi_dot0)
     if run.rolling == "contact":

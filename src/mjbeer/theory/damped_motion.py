@@ -66,7 +66,7 @@ def solve(scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float) -> Dampe
       ToleranceError: as `exact`.
     """
     radius = scene.can.radius
-    u0, u_dot0 = scene.start(phi0, phi_dot0)
+    u0, u_dot0 = scene.initial_axis(phi0, phi_dot0)
     if scene.incline == 0 and Launch.of(scene.oscillator, phi0, phi_dot0).stays:
         zeros = np.zeros_like(time)
         return DampedMotion(phi0 + zeros, zeros, u0 + zeros, zeros)

@@ -23,7 +23,7 @@ class Coordinates:
     time: np.ndarray
     """Time [s]."""
     u: np.ndarray
-    """Place of the axis along the incline [m], positive downhill; at time 0 as `Scene.start` says."""
+    """Place of the axis along the incline [m], positive downhill; at time 0 as `Scene.initial_axis` says."""
     phi: np.ndarray
     """Angle of the load [rad]: 0 where its centre of mass is nearest to the incline; it grows as a can rolls down."""
     u_dot: np.ndarray

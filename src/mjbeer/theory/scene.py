@@ -192,7 +192,7 @@ class Scene:
         """Return the weight along the incline, m_t g sin(alpha) [N]."""
         return self.mass * self.gravity * math.sin(self.incline)
 
-    def start(self, phi0: float, phi_dot0: float) -> tuple[float, float]:
+    def initial_axis(self, phi0: float, phi_dot0: float) -> tuple[float, float]:
         """Return u [m] and u_dot [m/s] of the axis at the start, for phi [rad] and phi_dot [rad/s].
 
         A sliding load starts with s = 0 and s_dot = 0 (eq. 12), and a frozen one with u = a phi

@@ -44,12 +44,12 @@ class Trajectory(Coordinates):
     def __post_init__(self) -> None:
         require.instance("scene", self.scene, Scene)
         phi0, phi_dot0 = require.start(self.phi0, self.phi_dot0)
-        vars(self).update(phi0=phi0, phi_dot0=phi_dot0)
+        require.set_fields(self, phi0=phi0, phi_dot0=phi_dot0)
         for name in Coordinates.__dataclass_fields__:
             samples = require.samples(name, getattr(self, name))
-            vars(self)[name] = samples
             if len(samples) != len(self.time):
                 raise ParameterError(f"{name} must have as many entries as time, {len(self.time)}, got {len(samples)}")
+            require.set_fields(self, **{name: samples})
         require.times("time", self.time, increasing=True)
 
     @property
@@ -80,7 +80,7 @@ class Trajectory(Coordinates):
     @property
     def distance(self) -> np.ndarray:
         """Return how far the axis has come down the incline since time 0 [m], at each sample."""
-        return self.u - self.scene.start(self.phi0, self.phi_dot0)[0]
+        return self.u - self.scene.initial_axis(self.phi0, self.phi_dot0)[0]
 
     @property
     def slip(self) -> np.ndarray:
@@ -205,7 +205,7 @@ class Trajectory(Coordinates):
 def exact(scene: Scene, time: ArrayLike, phi0: float, phi_dot0: float = 0.0) -> Trajectory:
     """Return the exact motion of a scene that starts with `phi0` [rad] and `phi_dot0` [rad/s] at time 0.
 
-    `time` [s] has the increasing times of the samples, none before 0. `Scene.start` has u and u_dot at time 0. A
+    `time` [s] has the increasing times of the samples, none before 0. `Scene.initial_axis` has u and u_dot at time 0. A
     start beyond a whole turn gives an `AngleWarning`, as degrees may have been meant.
 
     Raises:
@@ -225,7 +225,7 @@ def exact(scene: Scene, time: ArrayLike, phi0: float, phi_dot0: float = 0.0) -> 
 def exact_motion(scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float) -> Trajectory:
     """Return the motion of `exact`, without a warning about the start."""
     radius = scene.can.radius
-    u0, u_dot0 = scene.start(phi0, phi_dot0)
+    u0, u_dot0 = scene.initial_axis(phi0, phi_dot0)
     try:
         with np.errstate(over="raise", invalid="raise", divide="raise"):
             if scene.dissipates:

@@ -51,7 +51,7 @@ class Track:
 
     def __post_init__(self) -> None:
         for name in ("time", "along", *[each for each in ("roll", "phi") if getattr(self, each) is not None]):
-            vars(self)[name] = require.samples(name, getattr(self, name))
+            require.set_fields(self, **{name: require.samples(name, getattr(self, name))})
             if (count := len(getattr(self, name))) != len(self.time):
                 raise ParameterError(f"{name} must have as many entries as time, {len(self.time)}, got {count}")
         if len(self.time) < 12 or (np.diff(self.time) <= 0).any() or not np.ptp(self.along) > 0:

@@ -59,10 +59,10 @@ def right_hand_side(scene: Scene, sin: Function = math.sin, cos: Function = math
 
 
 def start(scene: Scene, phi0: float, phi_dot0: float) -> tuple[float, ...]:
-    """Return the initial state, in the order of `right_hand_side`, with u and u_dot from `Scene.start`."""
+    """Return the initial state, in the order of `right_hand_side`, with u and u_dot from `Scene.initial_axis`."""
     if scene.attachment == "frozen":
         return phi0, phi_dot0
-    u, u_dot = scene.start(phi0, phi_dot0)
+    u, u_dot = scene.initial_axis(phi0, phi_dot0)
     return u, phi0, u_dot, phi_dot0
 
 

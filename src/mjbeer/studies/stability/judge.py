@@ -157,7 +157,7 @@ def roll(scene: Scene, phi0: float, duration: float, timestep: float) -> tuple[n
     spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_PLANE, size=[0, 0, 1]).set_frame(slope)
     attach(spec, scene)
     model = spec.compile()
-    data, (u, _), swings = mujoco.MjData(model), scene.start(phi0, 0.0), scene.attachment == "sliding"
+    data, (u, _), swings = mujoco.MjData(model), scene.initial_axis(phi0, 0.0), scene.attachment == "sliding"
     down, normal = np.array([math.cos(tilt), 0, -math.sin(tilt)]), np.array([math.sin(tilt), 0, math.cos(tilt)])
     half = (tilt + u / radius) / 2
     data.joint("can-free").qpos = [*(radius * (1 - 1e-9) * normal + u * down), math.cos(half), 0, math.sin(half), 0]
@@ -205,7 +205,7 @@ def _angles(scene: Scene, motion: Coordinates) -> np.ndarray:
 
 
 def _start(scene: Scene, phi0: float, phi_dot0: float) -> np.ndarray:
-    return np.array([[phi0], [scene.start(phi0, phi_dot0)[0] / scene.can.radius]])
+    return np.array([[phi0], [scene.initial_axis(phi0, phi_dot0)[0] / scene.can.radius]])
 
 
 def _off(found: np.ndarray, right: np.ndarray, start: np.ndarray) -> float:
