@@ -22,14 +22,14 @@ from mjbeer.exceptions import (
     ToleranceError,
     UntrustedWarning,
 )
-from mjbeer.model.setting import INTEGRATORS, ROLLINGS, Integrator, Rolling
+from mjbeer.model.setting import MUJOCO_INTEGRATORS, ROLLINGS, Integrator, Rolling
 from mjbeer.simulation.simulator import Simulator
 from mjbeer.theory.oscillator import reduced
 from mjbeer.theory.trajectory import distance
 from tests.support.scenes import METAL, SCENES, error
 
 ARRAYS = ("time", "u", "phi", "u_dot", "phi_dot", "roll", "roll_dot", "lift", "lift_dot", "energy")
-ALL = (*INTEGRATORS, "DOP853")
+ALL = (*MUJOCO_INTEGRATORS, "DOP853")
 
 
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)

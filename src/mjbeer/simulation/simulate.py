@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from mjbeer import require
 from mjbeer.exceptions import DivergenceError, LiquidWarning, ParameterError, ToleranceError, UntrustedWarning
 from mjbeer.model.joints import joint_addresses, to_coordinates
-from mjbeer.model.setting import FRICTION, OWN, Integrator, Rolling, Setting
+from mjbeer.model.setting import FRICTION, MJBEER_INTEGRATORS, Integrator, Rolling, Setting
 from mjbeer.simulation.simulator import Simulator
 from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.oscillator import reduced
@@ -251,7 +251,7 @@ def _sample_times(duration: float | None, setting: Setting, times: np.ndarray) -
     ratios = times / timestep
     if ratios[-1] > _MOST_STEPS:
         raise ParameterError(f"times must be within {_MOST_STEPS:g} timesteps of {timestep!r} s, got {times[-1]} s")
-    if setting.integrator in OWN:
+    if setting.integrator in MJBEER_INTEGRATORS:
         return times
     steps = np.rint(ratios)
     off = (np.abs(ratios - steps) > _ON_A_STEP * ratios) | (np.diff(steps, prepend=-1.0) == 0)

@@ -9,10 +9,10 @@ import numpy as np
 
 from mjbeer.model.build import compiled_model, write_numbers
 from mjbeer.model.check import check_run, is_edited
+from mjbeer.model.compiled_numbers import compiled_views
 from mjbeer.model.joints import initial_state
-from mjbeer.model.mechanics import Mechanics, Structure
-from mjbeer.model.mjcf_file import compiled_views
-from mjbeer.model.setting import OWN, Setting
+from mjbeer.model.model_numbers import ModelNumbers, Structure
+from mjbeer.model.setting import MJBEER_INTEGRATORS, Setting
 from mjbeer.simulation.fixed_step import Recorder, Solution, states_after
 from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.scene import Scene
@@ -42,7 +42,7 @@ class Simulator:
         self.model, self._uneven = compiled_model(mechanics), uneven
         self.data = mujoco.MjData(self.model)
         self._views = compiled_views(self.model, mechanics.parameters)
-        self._written: Mechanics | None = None
+        self._written: ModelNumbers | None = None
         self._edited = is_edited(mechanics)
         self._dynamics: Dynamics | None = None  # of a model that one of mjbeer's own integrators has stepped
         self._write(mechanics)
@@ -57,7 +57,7 @@ class Simulator:
         simulator._write(mechanics)
         return simulator
 
-    def _write(self, mechanics: Mechanics) -> None:
+    def _write(self, mechanics: ModelNumbers) -> None:
         """Write the numbers of a scene into the model, if they are new, and reset the data."""
         self.scene, self.setting = mechanics.scene, mechanics.setting
         if mechanics == self._written:
@@ -95,8 +95,8 @@ class Simulator:
         timestep, tolerance = self.setting.timestep, self.setting.tolerance
         recorder: Recorder | None = None
         if tolerance is None and friction is not None:
-            recorder = Recorder(model, scene, friction, within=integrator in OWN)
-        if tolerance is None and integrator not in OWN:
+            recorder = Recorder(model, scene, friction, within=integrator in MJBEER_INTEGRATORS)
+        if tolerance is None and integrator not in MJBEER_INTEGRATORS:
             parts = (_GOLDEN_SECTION * timestep, (1 - _GOLDEN_SECTION) * timestep) if self._uneven else (timestep,)
             steps = np.rint(times / timestep).astype(np.int64)
             states = states_after(model, self.data, start, steps, parts, recorder)
@@ -120,7 +120,7 @@ class Simulator:
         return Solution(states, recorder.record if recorder else None, None, integrator)
 
 
-def _mechanics(scene: Scene, setting: Setting, uneven: bool = False) -> Mechanics:
+def _mechanics(scene: Scene, setting: Setting, uneven: bool = False) -> ModelNumbers:
     """Return what is to be written into the model of a scene.
 
     A rigid equality that is integrated to a tolerance only has to correct the slip that rounding causes. It is tuned to
@@ -129,4 +129,4 @@ def _mechanics(scene: Scene, setting: Setting, uneven: bool = False) -> Mechanic
     timestep = setting.timestep * (_GOLDEN_SECTION if uneven else 1)
     if setting.tolerance is not None and setting.rolling == "equality" and scene.gravity > 0:
         timestep = math.sqrt(scene.can.radius / scene.gravity) / 2
-    return Mechanics(scene, setting, timestep=timestep)
+    return ModelNumbers(scene, setting, timestep=timestep)

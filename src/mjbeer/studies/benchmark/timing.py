@@ -17,7 +17,7 @@ from mjbeer.integrators.dop853 import DOP853
 from mjbeer.integrators.gauss_jackson import GaussJackson
 from mjbeer.model.build import specify
 from mjbeer.model.joints import initial_state, to_coordinates
-from mjbeer.model.setting import INTEGRATORS, ROLLINGS, Setting, supported
+from mjbeer.model.setting import MUJOCO_INTEGRATORS, ROLLINGS, Setting, supported
 from mjbeer.output.terminal import progress_bar
 from mjbeer.simulation.fixed_step import states_after
 from mjbeer.simulation.simulator import Simulator
@@ -93,7 +93,7 @@ def ladders(scene: Scene, quick: bool = False, missing: Container[str] = ()) -> 
     large = tuple(128e-3 / 2 ** (k / 2) for k in range(0, 15, every))
     found: dict[Curve, tuple[float, ...]] = {}
     for rolling in (rolling for rolling in ROLLINGS if supported(scene, rolling)):
-        found |= {Curve(rolling, integrator): steps for integrator in INTEGRATORS}
+        found |= {Curve(rolling, integrator): steps for integrator in MUJOCO_INTEGRATORS}
         found[Curve(rolling, "DOP853")] = large
         if rolling != "contact":  # which is too soft for a tolerance
             found[Curve(rolling, points.CHOSEN, points.TOLERANCE)] = tolerances
@@ -153,7 +153,7 @@ def _set_up(case: Case, point: Point) -> tuple[Callable[[], Any], Callable[[Any]
 
     def motion(states: np.ndarray) -> Samples:
         found, count = to_coordinates(model, scene, states, times), own.evaluations if own else None
-        if point.method in INTEGRATORS:
+        if point.method in MUJOCO_INTEGRATORS:
             count = round(float(times[-1]) / value) * (4 if point.method == "RK4" else 1)
         return found.phi, found.u, count
 
