@@ -25,6 +25,7 @@ from mjbeer.theory.standing import Standing
 
 START = "start"
 """The name of the keyframe."""
+_INERTIA_WARNING = int(mujoco.mjtWarning.mjWARN_INERTIA)
 _compiled_models: dict[Structure, mujoco.MjModel] = {}
 """The compiled model of each structure, with the numbers of the scene that came first."""
 _compiling = threading.Lock()
@@ -211,7 +212,7 @@ def write_numbers(model: mujoco.MjModel, data: mujoco.MjData, numbers: ModelNumb
         _make_rigid(model)
     if any(min(body.mass, body.inertia) < mujoco.mjMINVAL for body in numbers.bodies.values()):
         raise mjcf_file.refused("mass and inertia of moving bodies must be larger than mjMINVAL")
-    if data.warning[mujoco.mjtWarning.mjWARN_INERTIA].number:
+    if data.warning.number[_INERTIA_WARNING]:
         raise mjcf_file.refused("masses and inertias are too unequal for it to compute accelerations")
     mujoco.mj_resetData(model, data)
 

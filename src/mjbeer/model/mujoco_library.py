@@ -51,13 +51,19 @@ def quiet() -> Generator[None]:
 def _exchange(output: _Output) -> _Output:
     """Set where the log goes and the address of the clock, and return what they were."""
     config = mujoco.MjLogConfig.get()
-    clock = ctypes.c_void_p.in_dll(library(), "mjcb_time")
+    clock = _clock()
     before = _Output(config.logto_console, config.logto_file, clock.value)
     config.logto_console = output.console
     config.logto_file = output.file
     clock.value = output.clock
     mujoco.MjLogConfig.set(config)
     return before
+
+
+@functools.cache
+def _clock() -> ctypes.c_void_p:
+    """Return the variable of the library that has the address of the clock."""
+    return ctypes.c_void_p.in_dll(library(), "mjcb_time")
 
 
 @functools.cache
