@@ -1,4 +1,5 @@
-"""Writes the MJCF that a viewer opens, and the SHA-256 of the mechanics files: `python tools/templates.py mjcf`."""
+"""Writes the MJCF that a viewer opens, and the SHA-256 of the mechanics files: `python
+tools/templates.py mjcf`."""
 
 import pathlib
 import sys
@@ -31,7 +32,8 @@ class Start(NamedTuple):
 
 
 class Template(NamedTuple):
-    """A file to be written: what it shows, and of which mechanics file; with a scene if the numbers are not its own."""
+    """A file to be written: what it shows, and of which mechanics file; with a scene if the numbers
+    are not its own."""
 
     about: str
     mechanics: str
@@ -119,14 +121,16 @@ def _format(numbers: np.ndarray) -> str:
 
 
 def _wrap(line: str) -> str:
-    """Return the line of an element in lines that are short enough; attributes go on below the first one."""
+    """Return the line of an element in lines that are short enough; attributes go on below the
+    first one."""
     if len(line) <= _WIDTH or "<!--" in line:
         return line
     indent = " " * (line.index(" ", line.index("<")) + 1)
     rows = []
     while len(line) > _WIDTH:
         end = line.rfind('" ', 0, _WIDTH) + 1
-        if end == 0 or len(line) - end > _WIDTH - len(indent):  # A list of numbers that is longer than a line.
+        if end == 0 or len(line) - end > _WIDTH - len(indent):
+            # A list of numbers is longer than a line.
             end = line.rindex(" ", 0, _WIDTH)
         rows.append(line[:end])
         line = indent + line[end + 1 :]
@@ -134,7 +138,8 @@ def _wrap(line: str) -> str:
 
 
 def digests(folder: pathlib.Path) -> str:
-    """Return the SHA-256 of the mechanics files of scenes in a folder, one a line, with their names."""
+    """Return the SHA-256 of the mechanics files of scenes in a folder, one a line, with their
+    names."""
     mechanics = sorted([*folder.glob("mechanics/sliding_*.xml"), *folder.glob("mechanics/frozen_*.xml")])
     return "".join(f"{digest(mjcf_file.content(str(path)))}  {path.name}\n" for path in mechanics)
 

@@ -1,4 +1,5 @@
-"""Attaches a can that is free in space to another world, fills it anew, and says what that world spoils."""
+"""Attaches a can that is free in space to another world, fills it anew, and says what that world
+spoils."""
 
 import math
 import warnings
@@ -17,7 +18,8 @@ from mjbeer.theory.scene import Scene
 from mjbeer.theory.standing import MOST_MODES, Standing
 
 _LARGEST_TURN = 0.5
-"""Largest angle [rad] of a mode's oscillation in a timestep: semi-implicit integrators then have it 1 % too fast."""
+"""Largest angle [rad] of a mode's oscillation in a timestep: semi-implicit integrators then have it
+1 % too fast."""
 _RK4_STABLE = 2.785
 """Largest product of a timestep and a rate of decay with which RK4 is stable."""
 _SLOSHES = tuple(f"slosh{mode}" for mode in range(1, MOST_MODES + 1))
@@ -35,19 +37,23 @@ def attach(
     body: str = "world",
     friction: float | Sequence[float] | None = None,
 ) -> mujoco.MjsBody:
-    """Attach a can to another world and return its body there: the names of all its elements begin with `prefix`.
+    """Attach a can to another world and return its body there.
 
-    A `standing` can stands on its origin, the middle of the bottom; a scene with beer gives a lying can, whose origin
-    is in the middle of its axis, which is y. The scene's incline is not built, and counts only in the damping that
-    `mjbeer.liquid` has for it. `pos` [m] and `quat` are those of the origin in a `body` of the parent; a can that is
-    not `free` is fixed to it.
+    The names of all its elements begin with `prefix`.
 
-    `friction` is one coefficient, or two or three: sliding, torsional, rolling. `None` is MuJoCo's default: 1, 0.005
-    and 0.0001. Of two geoms that meet, MuJoCo takes the larger ones, so that a can slides with 0.2 only if the floor
-    *and* the can have it, and the larger condim; the can has 3.
+    A `standing` can stands on its origin, the middle of the bottom; a scene with beer gives a lying
+    can, whose origin is in the middle of its axis, which is y. The scene's incline is not built,
+    and counts only in the damping that `mjbeer.liquid` has for it. `pos` [m] and `quat` are those
+    of the origin in a `body` of the parent; a can that is not `free` is fixed to it.
 
-    Options of the parent that are MuJoCo's defaults are taken as not chosen, and changed for the whole world: to an
-    elliptic cone; for a lying can to impratio 100 and RK4, too. An `UntrustedWarning` says what other options spoil.
+    `friction` is one coefficient, or two or three: sliding, torsional, rolling. `None` is MuJoCo's
+    default: 1, 0.005 and 0.0001. Of two geoms that meet, MuJoCo takes the larger ones, so that a
+    can slides with 0.2 only if the floor *and* the can have it, and the larger condim; the can has
+    3.
+
+    Options of the parent that are MuJoCo's defaults are taken as not chosen, and changed for the
+    whole world: to an elliptic cone; for a lying can to impratio 100 and RK4, too. An
+    `UntrustedWarning` says what other options spoil.
 
     Raises:
       ParameterError: if a parameter is invalid, or there is no such body.
@@ -85,7 +91,11 @@ def attach(
     frame = parent.body(body).add_frame(pos=pos, quat=quat)
     attached = frame.attach_body(child.body("can"), prefix, "")
     if reasons:
-        warnings.warn(f"the parent's options spoil the can: {'; '.join(reasons)}", UntrustedWarning, stacklevel=2)
+        warnings.warn(
+            f"the parent's options spoil the can: {'; '.join(reasons)}",
+            UntrustedWarning,
+            stacklevel=2,
+        )
     return attached
 
 
@@ -108,11 +118,14 @@ def _integrator_name(option: mujoco.MjOption) -> str:
 
 
 def refill(model: mujoco.MjModel, can: Standing | Scene, prefix: str = "can-") -> None:
-    """Give a can in a compiled model another fill or liquid, in place; it must be as large, with as many modes.
+    """Give a can in a compiled model another fill or liquid, in place.
 
-    It is the can that was attached under the `prefix`, or, with an empty one, that of a model of a standing can. Data
-    keep their state, and have the new accelerations from the next `mj_step` or `mj_forward` on. A standing can is drawn
-    with the new fill, a lying one still with the old. An `UntrustedWarning` says what the model's options spoil.
+    The new can must be as large, with as many modes.
+
+    It is the can that was attached under the `prefix`, or, with an empty one, that of a model of a
+    standing can. Data keep their state, and have the new accelerations from the next `mj_step` or
+    `mj_forward` on. A standing can is drawn with the new fill, a lying one still with the old. An
+    `UntrustedWarning` says what the model's options spoil.
 
     Raises:
       ParameterError: if the model has no such can.
@@ -147,11 +160,15 @@ def refill(model: mujoco.MjModel, can: Standing | Scene, prefix: str = "can-") -
     mujoco.mj_setConst(model, workspace)
     reasons = _spoiling_options(model.opt, can)
     if reasons:
-        warnings.warn(f"the model's options spoil the can: {'; '.join(reasons)}", UntrustedWarning, stacklevel=2)
+        warnings.warn(
+            f"the model's options spoil the can: {'; '.join(reasons)}",
+            UntrustedWarning,
+            stacklevel=2,
+        )
 
 
 def _require_same_can(model: mujoco.MjModel, can: Standing | Scene, prefix: str, spec: mujoco.MjSpec) -> None:
-    """Refuse a model whose can has another size or other parts than the specification of the can to be written."""
+    """Refuse a model whose can differs in size or parts from the specification of a can."""
     needed = [name for name in _PARTS if spec.body(name) is not None or spec.joint(name) is not None]
     kinds = (mujoco.mjtObj.mjOBJ_BODY, mujoco.mjtObj.mjOBJ_JOINT)
     there = [name for name in _PARTS if any(_has(model, kind, f"{prefix}{name}") for kind in kinds)]
@@ -212,10 +229,12 @@ def _mass_bounds(compiler: mujoco.MjsCompiler, child: mujoco.MjSpec) -> list[str
 
 
 def _fastest_decay(can: Standing | Scene) -> float:
-    """Return the largest rate [1/s] at which damping slows a spin, of a bob or of a can that turns around its load.
+    """Return the largest rate [1/s] at which damping slows the spin of a bob, or of a can on its
+    load.
 
-    Where damping grows with the rate, it is that at the frequency of the first mode, or at sqrt(g/a): thrown at 1 m/s,
-    0 of 1,976 cans diverge under RK4 up to its limit, and 510 of 1,112 beyond. What is in proportion has a sharp limit.
+    Where damping grows with the rate, it is that at the frequency of the first mode, or at
+    sqrt(g/a): thrown at 1 m/s, 0 of 1,976 cans diverge under RK4 up to its limit, and 510 of 1,112
+    beyond. What is in proportion has a sharp limit.
     """
     if isinstance(can, Scene):
         if not can.damping_law:

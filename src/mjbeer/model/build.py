@@ -1,7 +1,7 @@
 """Builds the MuJoCo model of a scene, for each of three ways of rolling.
 
-The numbers of the scene are written into an MJCF file. A model that is only stepped contains joints, masses, forces and
-contact geoms. A model that is drawn has looks too.
+The numbers of the scene are written into an MJCF file. A model that is only stepped contains
+joints, masses, forces and contact geoms. A model that is drawn has looks too.
 """
 
 import copy
@@ -43,31 +43,39 @@ def build(
     free: bool = True,
     mjcf: str | os.PathLike[str] | None = None,
 ) -> mujoco.MjModel:
-    """Return a compiled MuJoCo model of a scene, whose keyframe "start" is at `phi0` [rad], `phi_dot0` [rad/s].
+    """Return a compiled MuJoCo model of a scene.
 
-    `rolling` is "reduced" (no constraint: the coordinates allow no other motion), "equality" (a joint equality
-    roll = u/a) or "contact" (a cylinder on a plane, with a `friction` coefficient). Constraints are as hard as
-    `integrator` and `timestep` [s] allow; for a softer one edit what `specify` returns.
+    Its keyframe "start" is at `phi0` [rad] with `phi_dot0` [rad/s].
 
-    With `visuals` the incline is tilted and gravity is upright. Without them gravity is tilted instead: x is downhill
-    and z away from the incline. That model has no geoms but those in contact, and the stages of a step that it does not
-    need are disabled. Begin your own loop with `mjbeer.reset`: in a new MjData a can in contact hardly touches.
+    `rolling` is "reduced" (no constraint: the coordinates allow no other motion), "equality" (a
+    joint equality roll = u/a) or "contact" (a cylinder on a plane, with a `friction` coefficient).
+    Constraints are as hard as `integrator` and `timestep` [s] allow; for a softer one edit what
+    `specify` returns.
 
-    The joints are "slide" (u), "lift" (contact only), "roll" and, for a sliding load, "swing" relative to the can; a
-    reduced model has "slide" and "phi", or "phi" alone for a frozen load. With damping it has "implicitfast" instead of
-    "discrete": their steps are the same here, but "discrete" treats small forces as zero.
+    With `visuals` the incline is tilted and gravity is upright. Without them gravity is tilted
+    instead: x is downhill and z away from the incline. That model has no geoms but those in
+    contact, and the stages of a step that it does not need are disabled. Begin your own loop with
+    `mjbeer.reset`: in a new MjData a can in contact hardly touches.
 
-    A `standing` can stands on a floor, on a free joint; with `free=False`, which no other can has, the world holds it.
-    It has no `rolling`, `friction`, `phi0` and `phi_dot0`.
+    The joints are "slide" (u), "lift" (contact only), "roll" and, for a sliding load, "swing"
+    relative to the can; a reduced model has "slide" and "phi", or "phi" alone for a frozen load.
+    With damping it has "implicitfast" instead of "discrete": their steps are the same here, but
+    "discrete" treats small forces as zero.
 
-    `mjcf` is a folder that is read instead of mjbeer's own; without it, that of the environment variable MJBEER_MJCF
-    counts. Everything except the parameters in its README is used unchanged. If the model's accelerations then differ
-    from theory, an `UntrustedWarning` gives the file and the largest difference.
+    A `standing` can stands on a floor, on a free joint; with `free=False`, which no other can has,
+    the world holds it. It has no `rolling`, `friction`, `phi0` and `phi_dot0`.
+
+    `mjcf` is a folder that is read instead of mjbeer's own; without it, that of the environment
+    variable MJBEER_MJCF counts. Everything except the parameters in its README is used unchanged.
+    If the model's accelerations then differ from theory, an `UntrustedWarning` gives the file and
+    the largest difference.
 
     Raises:
       ParameterError: if a name is unknown, or a number is invalid.
-      UnsupportedError: if MuJoCo cannot have such a model, as for a massless can around a sliding load.
-      TemplateError: if a file of MJCF is missing, or lacks an element into which a number is written.
+      UnsupportedError: if MuJoCo cannot have such a model, as for a massless can around a sliding
+        load.
+      TemplateError: if a file of MJCF is missing, or lacks an element into which a number is
+        written.
     """
     setting = Setting(rolling, integrator, timestep, friction=friction, mjcf=mjcf)
     phi0, phi_dot0 = require.start(phi0, phi_dot0)
@@ -92,11 +100,12 @@ def specify(
     free: bool = True,
     mjcf: str | os.PathLike[str] | None = None,
 ) -> mujoco.MjSpec:
-    """Return the specification of the model that `build` compiles, to be edited or attached to another one.
+    """Return the specification of the model that `build` compiles, to edit it or to attach it.
 
-    The parameters and the errors are those of `build`. The can is the body "can", in the body "incline". A joint
-    equality is as stiff as MJCF can express, which `build` makes rigid in the compiled model. Attached to another
-    specification, bodies keep their joints, masses and geoms, and lose all options: the parent needs the same ones.
+    The parameters and the errors are those of `build`. The can is the body "can", in the body
+    "incline". A joint equality is as stiff as MJCF can express, which `build` makes rigid in the
+    compiled model. Attached to another specification, bodies keep their joints, masses and geoms,
+    and lose all options: the parent needs the same ones.
     """
     setting = Setting(rolling, integrator, timestep, friction=friction, mjcf=mjcf)
     spec = can_spec(scene, setting, visuals, free)
@@ -106,9 +115,14 @@ def specify(
 
 
 def can_spec(
-    can: Scene | Standing, setting: Setting, visuals: bool, free: bool, phi0: float = 0.0, phi_dot0: float = 0.0
+    can: Scene | Standing,
+    setting: Setting,
+    visuals: bool,
+    free: bool,
+    phi0: float = 0.0,
+    phi_dot0: float = 0.0,
 ) -> mujoco.MjSpec:
-    """Return the specification of a can of either kind, and refuse parameters that only the other kind has."""
+    """Return the specification of any can; refuse parameters that it does not have."""
     visuals = require.choice("visuals", visuals, (True, False))
     free = require.choice("free", free, (True, False))
     if isinstance(can, Standing):
@@ -122,21 +136,26 @@ def can_spec(
 
 def _refuse_rolling(setting: Setting, phi0: float, phi_dot0: float) -> None:
     """Refuse the parameters that a standing can does not have."""
-    given = {"rolling": setting.rolling, "friction": setting.friction, "phi0": phi0, "phi_dot0": phi_dot0}
+    given = {
+        "rolling": setting.rolling,
+        "friction": setting.friction,
+        "phi0": phi0,
+        "phi_dot0": phi_dot0,
+    }
     defaults = {"rolling": Setting.rolling, "friction": FRICTION, "phi0": 0.0, "phi_dot0": 0.0}
     if given != defaults:
         raise ParameterError(f"a standing can does not roll: it has none of {', '.join(given)}, got {given}")
 
 
 def _warn_of_edits(drawn: mujoco.MjModel | None, scene: Scene, setting: Setting) -> None:
-    """Warn, where the calling function is called, if a mechanics file or a drawn model differs from theory."""
+    """Warn the caller of `build` or `specify` if a file or a drawn model differs from theory."""
     fault = check_both(scene, setting, drawn)
     if fault is not None:
         warnings.warn(f"{fault}; the model is as the file has it", UntrustedWarning, stacklevel=3)
 
 
 def check_both(scene: Scene, setting: Setting, drawn: mujoco.MjModel | None = None) -> str | None:
-    """Return what is wrong with the mechanics file of a scene, or with a drawn model of it; None if nothing is."""
+    """Return what is wrong with a scene's mechanics file or drawn model, None if nothing is."""
     fault = check.check_file(setting.folder, scene.attachment, setting.rolling)
     if fault is not None or drawn is None:
         return fault
@@ -147,10 +166,10 @@ def check_both(scene: Scene, setting: Setting, drawn: mujoco.MjModel | None = No
 
 
 def rolling_spec(scene: Scene, setting: Setting, visuals: bool = False) -> mujoco.MjSpec:
-    """Return the specification of a scene in a setting, from its mechanics file and, with `visuals`, from the looks.
+    """Return the specification of a scene in a setting, with looks if `visuals` is True.
 
-    Without them it lacks everything that is only drawn or measured, or exerts no force. A file whose accelerations
-    differ from theory is left whole.
+    Without looks it lacks everything that is only drawn or measured, or exerts no force. A file
+    whose accelerations differ from theory is left whole.
     """
     numbers = ModelNumbers(scene, setting, visuals)
     root = mjcf_file.read(numbers.path)
@@ -171,13 +190,14 @@ def add_start(spec: mujoco.MjSpec, scene: Scene, phi0: float, phi_dot0: float) -
 
 
 def compiled_model(numbers: ModelNumbers) -> mujoco.MjModel:
-    """Return a new copy of the model to be stepped, with the numbers of another scene: `write_numbers` writes them.
+    """Return a new model to be stepped, into which `write_numbers` then writes its numbers.
 
-    Each structure is compiled once a process. The content of the mechanics file is part of the structure, so that an
-    edited file is compiled anew.
+    Each structure is compiled once a process. The content of the mechanics file is part of the
+    structure, so that an edited file is compiled anew.
 
     Raises:
-      TemplateError: if the mechanics file is missing, lacks an element, or has other accelerations than theory.
+      TemplateError: if the mechanics file is missing, lacks an element, or has other accelerations
+        than theory.
     """
     with _compiling:
         if numbers.structure not in _compiled_models:
@@ -197,7 +217,9 @@ def _compile_structure(numbers: ModelNumbers) -> mujoco.MjModel:
 
 
 def write_numbers(model: mujoco.MjModel, data: mujoco.MjData, numbers: ModelNumbers, views: Views) -> None:
-    """Write the numbers of a scene into a model of its structure, at its `compiled_views`, and reset the data.
+    """Write the numbers of a scene into a model of its structure, and reset the data.
+
+    `views` are the model's `compiled_views`.
 
     Raises:
       UnsupportedError: if MuJoCo cannot have such a model.
@@ -218,11 +240,11 @@ def write_numbers(model: mujoco.MjModel, data: mujoco.MjData, numbers: ModelNumb
 
 
 def _make_rigid(model: mujoco.MjModel) -> None:
-    """Change a compiled model so that MuJoCo solves its joint equality exactly, which MJCF cannot express.
+    """Make MuJoCo solve the joint equality of a compiled model exactly, which MJCF cannot express.
 
-    A row's softness is proportional to the inverse inertia that the compiled model stores for its joints, which is used
-    for nothing else here, and so is set to 0. One sweep of PGS then solves the single row, where Newton would add a
-    nearly infinite stiffness to the inertias.
+    A row's softness is proportional to the inverse inertia that the compiled model stores for its
+    joints, which is used for nothing else here, and so is set to 0. One sweep of PGS then solves
+    the single row, where Newton would add a nearly infinite stiffness to the inertias.
     """
     model.dof_invweight0[:] = 0
     model.opt.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_DIAGEXACT)

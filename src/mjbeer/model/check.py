@@ -1,4 +1,5 @@
-"""Compares the accelerations of a model with those of theory, from which an edited file may differ."""
+"""Compares the accelerations of a model with those of theory, from which an edited file may
+differ."""
 
 import copy
 import functools
@@ -22,23 +23,24 @@ from mjbeer.theory.equations import Coordinates, accelerations, select_samples
 from mjbeer.theory.scene import Attachment, Scene
 
 SHIPPED = pathlib.Path(__file__).with_name("shipped.sha256")
-"""The SHA-256 of mjbeer's own mechanics files, which `make templates` writes. Their motions are compared with theory in
-tests and searches, so that their runs need not be checked. To run another file, with a comment more, takes longer, and
-is no less right."""
+"""The SHA-256 of mjbeer's own mechanics files, which `make templates` writes. Their motions are
+compared with theory in tests and searches, so that their runs need not be checked. To run another
+file, with a comment more, takes longer, and is no less right."""
 _ALLOWED = 1e-13
-"""Largest difference of phi_ddot from theory that a model may have, divided by what `_rounding` returns. In random
-scenes of all sizes, at 448 starts and in 408 runs, rounding takes up to 5e-15 of that."""
+"""Largest difference of phi_ddot from theory that a model may have, divided by what `_rounding`
+returns. In random scenes of all sizes, at 448 starts and in 408 runs, rounding takes up to 5e-15 of
+that."""
 _STATES = 1000
-"""Number of states of a run, evenly spread, at which an edited file is checked, if it has more samples and checkpoints:
-it takes some 10 ms, or 20 in contact. What stops a can, or pushes it back, acts for longer than a thousandth of most
-runs."""
+"""Number of states of a run, evenly spread, at which an edited file is checked, if it has more
+samples and checkpoints: it takes some 10 ms, or 20 in contact. What stops a can, or pushes it back,
+acts for longer than a thousandth of most runs."""
 
 
 def check_file(folder: pathlib.Path, attachment: Attachment, rolling: Rolling) -> str | None:
     """Return what is wrong with a mechanics file, None if nothing is.
 
-    As it stands it must have the numbers of the paper's can. With other numbers, those of a scene that needs all of its
-    elements, it must have theory's accelerations.
+    As it stands it must have the numbers of the paper's can. With other numbers, those of a scene
+    that needs all of its elements, it must have theory's accelerations.
     """
     massless = attachment == "frozen" or rolling == "reduced"
     can = Can.massless() if massless else Can.sheet_metal()
@@ -90,10 +92,13 @@ def _shipped_digests() -> dict[str, str]:
 
 
 def check_run(numbers: ModelNumbers, motion: Coordinates) -> None:
-    """Compare a file that `is_edited` with theory at the states of a run: a limit or a wall may act only there.
+    """Compare a file that `is_edited` with theory at the states of a run.
 
-    The `motion` must be in the order of time. The states that are compared include the last one, and the ends of the
-    ranges of positions and rates. The model has the whole file, including what a model to be stepped leaves out.
+    A limit or a wall may act only there.
+
+    The `motion` must be in the order of time. The states that are compared include the last one,
+    and the ends of the ranges of positions and rates. The model has the whole file, including what
+    a model to be stepped leaves out.
 
     Raises:
       TemplateError: if the accelerations differ; the message names the file and the difference.
@@ -106,7 +111,8 @@ def check_run(numbers: ModelNumbers, motion: Coordinates) -> None:
     mjcf_file.write(root, numbers.parameters, numbers.path)
     mjcf_file.remove(root, "keyframe")  # It is that of the file's own scene.
     model = _compile(root, numbers.path)
-    fault = check_model(model, numbers.scene, numbers.setting, select_samples(motion, sorted(chosen)))
+    states = select_samples(motion, sorted(chosen))
+    fault = check_model(model, numbers.scene, numbers.setting, states)
     if fault is not None:
         raise TemplateError(f"{numbers.path} {fault}, in a state of this run")
 
@@ -122,8 +128,9 @@ def _compile(root: ET.Element, path: pathlib.Path) -> mujoco.MjModel:
 def check_model(model: mujoco.MjModel, scene: Scene, setting: Setting, motion: Coordinates | None = None) -> str | None:
     """Return how a model differs from its scene, None if it does not.
 
-    It must have the scene's joints, no constraint but that of rolling, and theory's accelerations at the states of a
-    `motion`, which are taken as states of rolling without slipping, or at a few other states.
+    It must have the scene's joints, no constraint but that of rolling, and theory's accelerations
+    at the states of a `motion`, which are taken as states of rolling without slipping, or at a few
+    other states.
     """
     joints = tuple(joint_addresses(model))
     expected_joints = _joints(scene, setting.rolling)
@@ -179,9 +186,12 @@ def _probes(scene: Scene) -> Coordinates:
 def _rolling_states(scene: Scene, motion: Coordinates) -> Coordinates:
     """Return the states of a motion as ones of rolling without slipping."""
     radius = scene.can.radius
+    u = motion.u
+    u_dot = motion.u_dot
     if scene.attachment == "frozen":
-        return rolling_coordinates(radius, radius * motion.phi, radius * motion.phi_dot, motion.phi, motion.phi_dot)
-    return rolling_coordinates(radius, motion.u, motion.u_dot, motion.phi, motion.phi_dot)
+        u = radius * motion.phi
+        u_dot = radius * motion.phi_dot
+    return rolling_coordinates(radius, u, u_dot, motion.phi, motion.phi_dot)
 
 
 class _Equations(NamedTuple):
@@ -198,9 +208,11 @@ class _Equations(NamedTuple):
 
 
 def _evaluate(model: mujoco.MjModel, scene: Scene, rolling: Rolling, probes: Coordinates) -> _Equations | str:
-    """Return the equations of motion of a model at states of rolling, or which constraints it has that it must not."""
+    """Return the equations of motion of a model at states of rolling, or which constraints it has
+    that it must not."""
     model = copy.copy(model)
-    model.opt.integrator = mujoco.mjtIntegrator.mjINT_RK4  # "discrete" has changes over a whole step.
+    # "discrete" has changes over a whole step.
+    model.opt.integrator = mujoco.mjtIntegrator.mjINT_RK4
     data = mujoco.MjData(model)
     states = to_states(model, probes)
     inertias = np.empty((len(states), model.nv, model.nv))
@@ -238,14 +250,16 @@ def _phi_ddot(model: mujoco.MjModel, scene: Scene, equations: _Equations) -> np.
     MuJoCo's own accelerations are those of a constraint that may be soft.
     """
     radius = scene.can.radius
-    # The rates of all joints in two motions of rolling, of the can alone and of the load alone; or in one, of both.
+    # The rates of all joints in two motions of rolling, of the can alone and of the load alone; or
+    # in one, of both.
     if scene.attachment == "sliding":
         can_rate = np.array([1.0, 0.0])
         load_rate = np.array([0.0, 1.0])
     else:
         can_rate = load_rate = np.ones(1)
-    motions = to_states(model, rolling_coordinates(radius, 0 * can_rate, radius * can_rate, 0 * load_rate, load_rate))
-    rates = motions[:, model.nq :]
+    nowhere = 0 * can_rate
+    motions = rolling_coordinates(radius, nowhere, radius * can_rate, nowhere, load_rate)
+    rates = to_states(model, motions)[:, model.nq :]
     inertias = rates @ equations.inertias @ rates.T
     torques = equations.torques @ rates.T
     accelerations_of_joints = np.linalg.solve(inertias, torques[..., None])[..., 0] @ rates
@@ -255,13 +269,13 @@ def _phi_ddot(model: mujoco.MjModel, scene: Scene, equations: _Equations) -> np.
 
 
 def _rounding(scene: Scene, rolling: Rolling, probes: Coordinates, size: float) -> np.ndarray:
-    """Return accelerations [rad/s^2] to which the rounding of phi_ddot is in proportion, shape (states,).
+    """Return what the rounding of phi_ddot is in proportion to [rad/s^2], shape (states,).
 
     `size` is that of phi_ddot itself.
     """
     inertia = scene.oscillator.inertia(probes.phi)
-    # MuJoCo computes torques from places in the world: the farther the can is from the origin, and the heavier beside
-    # the inertia that they turn, the more digits of them are lost.
+    # MuJoCo computes torques from places in the world: the farther the can is from the origin, and
+    # the heavier beside the inertia that they turn, the more digits of them are lost.
     rounding = size * (1 + np.abs(probes.roll)) * (1 + scene.mass * scene.can.radius**2 / inertia)
     if scene.oscillator.chord > 0 and rolling == "reduced":
         # The direction of the chord tendon, which has no length at phi = pi.

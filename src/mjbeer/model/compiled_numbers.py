@@ -1,7 +1,7 @@
 """Where a compiled model has the numbers of a scene, and how they are written there.
 
-To compile a model takes far longer than a run. Scenes whose models have the same elements therefore share one compiled
-model, into which the numbers of each scene are written.
+To compile a model takes far longer than a run. Scenes whose models have the same elements therefore
+share one compiled model, into which the numbers of each scene are written.
 """
 
 from collections.abc import Callable
@@ -14,7 +14,8 @@ from mjbeer.model.mjcf_file import Parameters
 from mjbeer.model.setting import MUJOCO_INTEGRATORS
 
 Views: TypeAlias = dict[tuple[str, str], list[np.ndarray]]
-"""The arrays of a compiled model that have a parameter, by its element and attribute, in the order of its numbers."""
+"""The arrays of a compiled model that have a parameter, by its element and attribute, in the order
+of its numbers."""
 _INTEGRATORS: dict[str, int] = {
     name: int(mujoco.mjtIntegrator.__members__[f"mjINT_{name.upper()}"]) for name in MUJOCO_INTEGRATORS
 }
@@ -32,7 +33,8 @@ def _tendon_armature(model: mujoco.MjModel, name: str) -> list[np.ndarray]:
 
 
 def _coefficient(model: mujoco.MjModel, name: str) -> list[np.ndarray]:
-    """Return where the coefficient of a joint in a fixed tendon is, by a name such as "slip/roll"."""
+    """Return where the coefficient of a joint in a fixed tendon is, by a name such as
+    "slip/roll"."""
     tendon, joint = name.split("/")
     first = int(model.tendon_adr[model.tendon(tendon).id])
     place = first + list(model.wrap_objid[first:]).index(model.joint(joint).id)
@@ -66,7 +68,8 @@ _VIEWS: dict[tuple[str, str], Callable[[mujoco.MjModel, str], list[np.ndarray]]]
 
 
 def compiled_views(model: mujoco.MjModel, values: Parameters) -> Views:
-    """Return where a compiled model has those parameters that differ from scene to scene, except options."""
+    """Return where a compiled model has those parameters that differ from scene to scene, except
+    options."""
     views = {}
     for element, attribute in values:
         tag, _, name = element.partition(" ")
@@ -75,7 +78,8 @@ def compiled_views(model: mujoco.MjModel, values: Parameters) -> Views:
             continue
         try:
             views[element, attribute] = view(model, name)
-        except KeyError:  # The element was removed, because it has no effect in any scene of this structure.
+        except KeyError:
+            # The element was removed, because it has no effect in any scene of this structure.
             continue
     return views
 

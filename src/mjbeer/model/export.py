@@ -1,4 +1,5 @@
-"""A scene made ready for MuJoCo's viewer, and written as one stand-alone MJCF file, for MuJoCo 4 or for others too."""
+"""A scene made ready for MuJoCo's viewer, and written as one stand-alone MJCF file, for MuJoCo 4 or
+for others too."""
 
 import os
 import xml.etree.ElementTree as ET
@@ -11,14 +12,21 @@ from mjbeer.exceptions import ParameterError, TemplateError, UnsupportedError
 from mjbeer.model import mjcf_file
 from mjbeer.model.build import START, add_start, can_spec, check_both
 from mjbeer.model.mujoco_library import library
-from mjbeer.model.setting import FRICTION, MUJOCO_INTEGRATORS, Integrator, MujocoIntegrator, Rolling, Setting
+from mjbeer.model.setting import (
+    FRICTION,
+    MUJOCO_INTEGRATORS,
+    Integrator,
+    MujocoIntegrator,
+    Rolling,
+    Setting,
+)
 from mjbeer.output import files
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.standing import Standing
 
 PORTABLE: tuple[MujocoIntegrator, ...] = ("Euler", "implicitfast", "RK4")
-"""The integrators that everything has which loads a portable export: MJX and mujoco_warp have no "implicit", and MuJoCo
-3.3 has no "discrete"."""
+"""The integrators that everything has which loads a portable export: MJX and mujoco_warp have no
+"implicit", and MuJoCo 3.3 has no "discrete"."""
 
 
 def export(
@@ -34,22 +42,25 @@ def export(
     free: bool = True,
     mjcf: str | os.PathLike[str] | None = None,
 ) -> None:
-    """Write a scene as one MJCF file, with everything drawn, with sensors, and with its start as the keyframe "start".
+    """Write a scene as one MJCF file, with looks, sensors, and its start as the keyframe "start".
 
-    The parameters are those of `simulate`, but the integrator must be one of MuJoCo's, and the file's name must end in
-    .xml. A reduced model of a frozen load turns on the spot, because its one coordinate is phi.
+    The parameters are those of `simulate`, but the integrator must be one of MuJoCo's, and the
+    file's name must end in .xml. A reduced model of a frozen load turns on the spot, because its
+    one coordinate is phi.
 
-    With `portable`, MuJoCo from 3.3.4 on, MJX, mujoco_warp and dm_control load the file. The integrator must then be
-    one of `PORTABLE`, the scene must have no drag and no damping but in proportion to a rate, and a contact is softer:
-    docs/portability.md has the errors.
+    With `portable`, MuJoCo from 3.3.4 on, MJX, mujoco_warp and dm_control load the file. The
+    integrator must then be one of `PORTABLE`, the scene must have no drag and no damping but in
+    proportion to a rate, and a contact is softer: docs/portability.md has the errors.
 
-    A `standing` can is written with the floor that it stands on, or without `free` as one that is held. It has no other
-    parameters than `integrator`, `timestep`, `mjcf` and `portable`, with which it lacks the damping of breaking waves.
+    A `standing` can is written with the floor that it stands on, or without `free` as one that is
+    held. It has no other parameters than `integrator`, `timestep`, `mjcf` and `portable`, with
+    which it lacks the damping of breaking waves.
 
     Raises:
       ParameterError: if a parameter is invalid.
       UnsupportedError: if MuJoCo cannot have such a model.
-      TemplateError: if a file of MJCF is missing, lacks an element, or has other accelerations than theory.
+      TemplateError: if a file of MJCF is missing, lacks an element, or has other accelerations than
+        theory.
       OutputError: if the file cannot be written.
     """
     target = require.path(path)
@@ -73,7 +84,8 @@ def export(
         if portable:
             _soften(spec, scene)
         spec.comment = f" Written by mjbeer: rolling={rolling!r}, {scene!r}. The start is the keyframe {START!r}. "
-    spec.compiler.fusestatic = portable  # MuJoCo 3.3 refuses a body without mass that has a drawn geom
+    # MuJoCo 3.3 refuses a body without mass that has a drawn geom.
+    spec.compiler.fusestatic = portable
     if portable:  # MJX 3.3 has no energy, and not all flags
         spec.option.disableflags &= int(mujoco.mjtDisableBit.mjDSBL_REFSAFE)
         spec.option.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_ENERGY)
@@ -83,7 +95,8 @@ def export(
 
 
 def _text(spec: mujoco.MjSpec) -> str:
-    """Return the specification as XML with 17 digits, which give all doubles back; MuJoCo's default is 6."""
+    """Return the specification as XML with 17 digits, which give all doubles back; MuJoCo's default
+    is 6."""
     before = library()._mjPRIVATE__get_xml_precision()
     library()._mjPRIVATE__set_xml_precision(17)
     try:
@@ -93,7 +106,8 @@ def _text(spec: mujoco.MjSpec) -> str:
 
 
 def _remove_breaking_waves(spec: mujoco.MjSpec) -> None:
-    """Leave a standing can only the damping in proportion to the rate: MuJoCo 3.3 knows no other."""
+    """Leave a standing can only the damping in proportion to the rate: MuJoCo 3.3 knows no
+    other."""
     for joint in spec.joints:
         joint.damping = [joint.damping[0], 0, 0]
 
@@ -101,9 +115,9 @@ def _remove_breaking_waves(spec: mujoco.MjSpec) -> None:
 def _soften(spec: mujoco.MjSpec, scene: Scene) -> None:
     """Make the rolling constraint of a portable export as hard as can be without `diagexact`.
 
-    Without it an equality's row is softened by 1/m + 1/I, of slide and hinge, in metres and radians alike. A row about
-    angles, roll - u/a, should have 1/(m a^2) + 1/I, and one about distances, u - a roll, 1/m + a^2/I. The one is taken
-    that is not too soft.
+    Without it an equality's row is softened by 1/m + 1/I, of slide and hinge, in metres and radians
+    alike. A row about angles, roll - u/a, should have 1/(m a^2) + 1/I, and one about distances, u -
+    a roll, 1/m + a^2/I. The one is taken that is not too soft.
     """
     if scene.drag > 0 or any(scene.damping_law.coefficients[1:]):
         raise UnsupportedError(
@@ -111,8 +125,8 @@ def _soften(spec: mujoco.MjSpec, scene: Scene) -> None:
         )
     spec.option.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_DIAGEXACT)
     for pair in spec.pairs:
-        # With 0.9999 and 100, as in models for MuJoCo 4, its error is a tenth in double precision, but in single
-        # precision, as in mujoco_warp, the solver then ends with NaN.
+        # With 0.9999 and 100, as in models for MuJoCo 4, its error is a tenth in double precision,
+        # but in single precision, as in mujoco_warp, the solver then ends with NaN.
         pair.solimp[:2] = 0.999
         spec.option.impratio = 10.0
     if scene.can.radius > 1.0:
@@ -138,7 +152,8 @@ def _portable(text: str, model: mujoco.MjModel) -> str:
 
 
 def _dissolve_frames(root: ET.Element, model: mujoco.MjModel) -> None:
-    """Replace each frame by its elements, at their places in the body: dm_control does not know frames."""
+    """Replace each frame by its elements, at their places in the body: dm_control does not know
+    frames."""
     for parent in list(root.iter()):
         for place, frame in reversed(list(enumerate(parent))):
             if frame.tag == "frame":

@@ -1,7 +1,7 @@
-"""Cans that are free in space: their specifications, and the numbers that are written into their mechanics files.
+"""Cans that are free in space: their specifications, and the numbers of their models.
 
-The pendulums of a standing can's slosh are on ball joints: two hinges diverge in a can that tumbles, and two slides do
-not follow gravity.
+The pendulums of a standing can's slosh are on ball joints: two hinges diverge in a can that
+tumbles, and two slides do not follow gravity.
 """
 
 import functools
@@ -22,17 +22,21 @@ from mjbeer.theory.scene import Scene, sliding
 from mjbeer.theory.standing import Standing, standing
 
 BREAKING = 0.02
-"""Damping ratio that a mode has more at the rate omega, growing with the square of the rate: waves break. It is chosen,
-not computed: with it thrown cans are stable at 5 ms. At an elevation of 0.1 R it adds 2e-4."""
+"""Damping ratio that a mode has more at the rate omega, growing with the square of the rate: waves
+break. It is chosen, not computed: with it thrown cans are stable at 5 ms. At an elevation of 0.1 R
+it adds 2e-4."""
 _LEAST_BOB_SHARE = 1e-3
-"""Least share of a pendulum's inertia that its bob has about itself: MuJoCo moves nothing without inertia. The bob is
-heavier by as much, and nearer to the pivot, so that the motion is exactly the pendulum's."""
+"""Least share of a pendulum's inertia that its bob has about itself: MuJoCo moves nothing without
+inertia. The bob is heavier by as much, and nearer to the pivot, so that the motion is exactly the
+pendulum's."""
 _BOB_SHARE_PER_DAMPING = 0.1
-"""That share divided by the damping ratio: with less, the damping of a spin is too stiff for RK4."""
+"""That share divided by the damping ratio: with less, the damping of a spin is too stiff for
+RK4."""
 
 
 def standing_spec(can: Standing, setting: Setting, visuals: bool, free: bool) -> mujoco.MjSpec:
-    """Return the specification of a standing can; one that is not `free` has neither a free joint nor a floor."""
+    """Return the specification of a standing can; one that is not `free` has neither a free joint
+    nor a floor."""
     integrator = require.choice("integrator", setting.integrator, MUJOCO_INTEGRATORS)
     root, path = _read_mechanics("standing", setting.folder)
     if not free:
@@ -47,7 +51,8 @@ def standing_spec(can: Standing, setting: Setting, visuals: bool, free: bool) ->
 
 
 def attached_spec(can: Standing | Scene, visuals: bool = True) -> mujoco.MjSpec:
-    """Return the specification of a can that is to be attached to another world: it has no free joint yet."""
+    """Return the specification of a can that is to be attached to another world: it has no free
+    joint yet."""
     if not isinstance(can, Scene):
         require.instance("can", can, Standing)
         return standing_spec(can, Setting(), visuals, free=False)
@@ -65,7 +70,8 @@ def attached_spec(can: Standing | Scene, visuals: bool = True) -> mujoco.MjSpec:
 
 
 def _read_mechanics(name: str, folder: pathlib.Path) -> tuple[ET.Element, pathlib.Path]:
-    """Return a mechanics file without keyframes, and its path; numbers that somebody has changed are an error."""
+    """Return a mechanics file without keyframes, and its path; numbers that somebody has changed
+    are an error."""
     path = folder / "mechanics" / f"{name}.xml"
     root = mjcf_file.read(path)
     edited = mjcf_file.differences(root, _paper_parameters(name))
@@ -122,8 +128,9 @@ def pendulums(can: Standing) -> Pendulums:
 def bob_shares(can: Standing) -> np.ndarray:
     """Return the share of each pendulum's inertia that its bob has about itself.
 
-    A share s makes a bob heavier by m s / (1 - s), as if so much of what does not slosh were moved to the pivot. Half
-    of the mass and of the inertia of that part are left, which is light in a shallow liquid.
+    A share s makes a bob heavier by m s / (1 - s), as if so much of what does not slosh were moved
+    to the pivot. Half of the mass and of the inertia of that part are left, which is light in a
+    shallow liquid.
     """
     masses = can.slosh_masses()
     if len(masses) == 0:
@@ -135,18 +142,22 @@ def bob_shares(can: Standing) -> np.ndarray:
     mass, first, second = can.fixed_moments() - [masses.sum(), masses @ bobs, masses @ bobs**2]
     middle = first / mass
     inertia = second - mass * middle**2
-    # Without masses d_n at distances r_n from its middle, that part keeps I - sum(d_n r_n^2) less what the shift of its
-    # middle takes: together no less than I - sum(d_n r_n^2) / (1 - sum(d_n) / m), by Schwarz's inequality.
+    # Without masses d_n at distances r_n from its middle, that part keeps I - sum(d_n r_n^2) less
+    # what the shift of its middle takes: together no less than I - sum(d_n r_n^2) / (1 - sum(d_n) /
+    # m), by Schwarz's inequality.
     most = min(mass / 2 / moved.sum(), inertia / 4 / (moved @ (pivots - middle) ** 2))
     moved *= min(1.0, most)
     return moved / (masses + moved)
 
 
 def standing_parameters(can: Standing) -> Parameters:
-    """Return the parameters of a standing can, in whose file the origin is the middle of the inside of the bottom.
+    """Return the parameters of a standing can.
 
-    What does not slosh is the body "liquid". Each mode is a body "slosh1", "slosh2" ... on a ball joint of its name.
-    The masses, first and second moments of all of them together are those of theory, with the bobs as they are.
+    Its origin is the middle of the inside of the bottom.
+
+    What does not slosh is the body "liquid". Each mode is a body "slosh1", "slosh2" ... on a ball
+    joint of its name. The masses, first and second moments of all of them together are those of
+    theory, with the bobs as they are.
     """
     shell = can.can
     half_length = shell.length / 2
@@ -161,14 +172,17 @@ def standing_parameters(can: Standing) -> Parameters:
     for mode in range(len(bobs.masses)):
         name = f"slosh{mode + 1}"
         spin = float(bobs.spins[mode])
-        parameters |= _inertial(name, float(bobs.masses[mode]), -float(bobs.arms[mode]), (spin, spin, spin))
+        mass = float(bobs.masses[mode])
+        parameters |= _inertial(name, mass, -float(bobs.arms[mode]), (spin, spin, spin))
         parameters[f"body {name}", "pos"] = (0, 0, float(bobs.pivots[mode]))
-        parameters[f"joint {name}", "damping"] = (float(bobs.damping[mode]), 0, float(bobs.breaking[mode]))
+        damping = (float(bobs.damping[mode]), 0, float(bobs.breaking[mode]))
+        parameters[f"joint {name}", "damping"] = damping
     return parameters | _fixed_liquid(can, bobs)
 
 
 def _fixed_liquid(can: Standing, bobs: Pendulums) -> Parameters:
-    """Return the inertial of the liquid that does not slosh: its moments are those of theory less those of the bobs."""
+    """Return the inertial of the liquid that does not slosh: its moments are those of theory less
+    those of the bobs."""
     middle = can.height / 2
     places = bobs.pivots - middle - bobs.arms
     sloshing = [
@@ -215,7 +229,8 @@ def _paper_parameters(name: str) -> Parameters:
 
 
 def _inertial(body: str, mass: float, height: float, inertia: tuple[float, float, float]) -> Parameters:
-    """Return mass, centre of mass at a `height` and moments of inertia about x, y and z of a body."""
+    """Return mass, centre of mass at a `height` and moments of inertia about x, y and z of a
+    body."""
     element = f"inertial {body}"
     return {
         (element, "mass"): (mass,),
@@ -227,8 +242,8 @@ def _inertial(body: str, mass: float, height: float, inertia: tuple[float, float
 def transverse_inertia(can: Can) -> float:
     """Return the moment of inertia of a can about a line across its middle [kg m^2].
 
-    Mass and inertia about the axis leave one answer for a thin wall with two flat ends: the ends have the mass
-    2 (m - I/a^2), or as much of that as there is.
+    Mass and inertia about the axis leave one answer for a thin wall with two flat ends: the ends
+    have the mass 2 (m - I/a^2), or as much of that as there is.
     """
     ends = min(max(2 * (can.mass - can.inertia / can.radius**2), 0.0), can.mass)
     return can.inertia / 2 + (can.mass + 2 * ends) * can.length**2 / 12

@@ -13,15 +13,17 @@ from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.scene import Scene
 
 START_DEPTH = 1e-9
-"""Depth in the incline at which a can in contact starts, in radii. At depth 0 rounding would decide whether it touches;
-a can that does not touch falls freely for a step, 5 um at 1 ms, which is 1e5 times this depth."""
+"""Depth in the incline at which a can in contact starts, in radii. At depth 0 rounding would decide
+whether it touches; a can that does not touch falls freely for a step, 5 um at 1 ms, which is 1e5
+times this depth."""
 
 
 def reset(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, phi0: float, phi_dot0: float = 0.0) -> None:
-    """Put the model of a scene at its start at `phi0` [rad] with `phi_dot0` [rad/s], at time 0, for your own loop.
+    """Put the model of a scene at a start, at `phi0` [rad] with `phi_dot0` [rad/s], at time 0.
 
-    Everything else in the `data` is reset, and accelerations and forces are computed (`mj_forward`). The model may come
-    from `build`, from an export, or from a specification with further joints: the scene's are found by name.
+    Your own loop begins with it. Everything else in the `data` is reset, and accelerations and
+    forces are computed (`mj_forward`). The model may come from `build`, from an export, or from a
+    specification with further joints: the scene's are found by name.
 
     Raises:
       ParameterError: if the start is invalid, or the model has no joint for phi.
@@ -44,19 +46,22 @@ def reset(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, phi0: float,
 
 @functools.lru_cache(maxsize=32)
 def joint_addresses(model: mujoco.MjModel) -> dict[str, int]:
-    """Return the index of each joint's coordinate in qpos, which is that of its rate in qvel too."""
+    """Return the index of each joint's coordinate in qpos, which is that of its rate in qvel
+    too."""
     joints = [model.joint(joint) for joint in range(model.njnt)]
     return {joint.name: int(joint.qposadr[0]) for joint in joints}
 
 
 def initial_joints(joints: Iterable[str], scene: Scene, phi0: float, phi_dot0: float) -> np.ndarray:
-    """Return positions and rates of joints at a start, shape (2, joints); a joint that is not a scene's is at 0."""
+    """Return positions and rates of joints at a start, shape (2, joints); a joint that is not a
+    scene's is at 0."""
     values = _start_values(scene, phi0, phi_dot0)
     return np.array([values.get(name, (0.0, 0.0)) for name in joints]).T
 
 
 def initial_state(model: mujoco.MjModel, scene: Scene, phi0: float, phi_dot0: float) -> np.ndarray:
-    """Return qpos and qvel of a start at `phi0` [rad] with `phi_dot0` [rad/s], as one array of shape (nq + nv,)."""
+    """Return qpos and qvel of a start at `phi0` [rad] with `phi_dot0` [rad/s], as one array of
+    shape (nq + nv,)."""
     return initial_joints(joint_addresses(model), scene, phi0, phi_dot0).ravel()
 
 
@@ -72,20 +77,22 @@ def to_states(model: mujoco.MjModel, motion: Coordinates) -> np.ndarray:
 
 
 def to_coordinates(model: mujoco.MjModel, scene: Scene, states: np.ndarray, times: np.ndarray) -> Coordinates:
-    """Return the coordinates for states of shape (samples, nq + nv) at `times` [s], shape (samples,)."""
+    """Return the coordinates for states of shape (samples, nq + nv) at `times` [s], shape
+    (samples,)."""
     joints = joint_addresses(model)
     radius = scene.can.radius
 
-    def position_and_rate(name: str) -> np.ndarray:
-        """Return the positions and the rates of a joint, shape (2, samples); zeros if there is none."""
+    def joint_values(name: str) -> np.ndarray:
+        """Return the positions and the rates of a joint, shape (2, samples); zeros if there is
+        none."""
         if name not in joints:
             return np.zeros((2, len(states)))
         return states.T[joints[name] :: model.nq].copy()
 
-    phi = position_and_rate("phi") if "phi" in joints else position_and_rate("roll") + position_and_rate("swing")
-    u = position_and_rate("slide") if "slide" in joints else radius * phi
-    roll = position_and_rate("roll") if "roll" in joints else u / radius
-    lift = position_and_rate("lift")
+    phi = joint_values("phi") if "phi" in joints else joint_values("roll") + joint_values("swing")
+    u = joint_values("slide") if "slide" in joints else radius * phi
+    roll = joint_values("roll") if "roll" in joints else u / radius
+    lift = joint_values("lift")
     return Coordinates(
         time=times,
         u=u[0],
@@ -100,7 +107,8 @@ def to_coordinates(model: mujoco.MjModel, scene: Scene, states: np.ndarray, time
 
 
 def rolling_coordinates(radius: float, u: Any, u_dot: Any, phi: Any, phi_dot: Any) -> Coordinates:
-    """Return the coordinates of a can that rolls without slipping, in contact; u is in [m], phi in [rad]."""
+    """Return the coordinates of a can that rolls without slipping, in contact; u is in [m], phi in
+    [rad]."""
     nothing = 0 * phi
     return Coordinates(
         time=nothing,

@@ -1,6 +1,7 @@
-"""The looks of a can: geoms, meshes and cameras, which are added to its mechanics and fit its sizes.
+"""The looks of a can: geoms, meshes and cameras, which are added to its mechanics.
 
-Across the can's axis, the y axis, everything grows with the radius, and along it with the can's length.
+Across the can's axis, the y axis, everything grows with the radius, and along it with the can's
+length.
 """
 
 import copy
@@ -26,12 +27,13 @@ VISUAL_GROUP = 2
 TURNING = ("can_mark", "can_spot", "can_tab", "can_mouth", "can_spokes")
 """The geoms that show how far the can has turned."""
 WALL = 0.06
-"""Thickness of the drawn wall of the can, in radii. It lies outside the radius, so that the beer fills the inside."""
+"""Thickness of the drawn wall of the can, in radii. It lies outside the radius, so that the beer
+fills the inside."""
 FOAM = 0.025
 """Largest thickness of the foam, in radii."""
 EDGES = 256
-"""Number of edges around the arc of the beer. The error of the polygon falls as its square; with 256 edges mass,
-centroid and inertia are within 6e-4 for every fill up to 0.95."""
+"""Number of edges around the arc of the beer. The error of the polygon falls as its square; with
+256 edges mass, centroid and inertia are within 6e-4 for every fill up to 0.95."""
 _UPRIGHT_GEOMS = ("can_wall", "can_end")
 """The geoms of a standing can, except its beer."""
 _NEEDED = {
@@ -76,7 +78,8 @@ def name(can: Scene | Standing) -> str:
 
 
 def drawn_spec(root: ET.Element, path: pathlib.Path, can: Scene | Standing) -> mujoco.MjSpec:
-    """Return the specification in the tree of the mechanics file at a `path`, with the looks of a can."""
+    """Return the specification in the tree of the mechanics file at a `path`, with the looks of a
+    can."""
     folder = path.parents[1]
     add_looks(root, name(can), folder)
     spec = mjcf_file.parse_spec(root, path)
@@ -92,9 +95,9 @@ def drawn_spec(root: ET.Element, path: pathlib.Path, can: Scene | Standing) -> m
 def add_looks(root: ET.Element, kind: str, folder: pathlib.Path) -> None:
     """Add the looks of a kind of can, from a folder of MJCF, to the tree of a mechanics file.
 
-    What the looks have in a body is added to the body of this name, if there is one; a load without a body of its own
-    is in the can. A geom replaces the one of its name, which shows where the load is in a mechanics file that is opened
-    by itself.
+    What the looks have in a body is added to the body of this name, if there is one; a load without
+    a body of its own is in the can. A geom replaces the one of its name, which shows where the load
+    is in a mechanics file that is opened by itself.
     """
     looks = mjcf_file.read(folder / "looks" / f"{kind}.xml")
     bodies = {body.get("name"): body for body in root.iter("body")}
@@ -151,7 +154,8 @@ def _fit_to_scene(spec: mujoco.MjSpec, scene: Scene) -> None:
 
 
 def _fit_to_standing(spec: mujoco.MjSpec, standing: Standing) -> None:
-    """Fit what is drawn to a standing can: a column of beer under a cylinder that tilts with the body "slosh1"."""
+    """Fit what is drawn to a standing can: a column of beer under a cylinder that tilts with the
+    body "slosh1"."""
     for wall in _UPRIGHT_GEOMS:
         spec.geom(wall).pos = [0, 0, standing.can.length / 2]
     for beer_geom, cylinder in beer_column(standing).items():
@@ -163,9 +167,9 @@ def _fit_to_standing(spec: mujoco.MjSpec, standing: Standing) -> None:
 def beer_column(standing: Standing) -> dict[str, Cylinder]:
     """Return the cylinders that draw the beer of a standing can, by the names of their geoms.
 
-    The upper one tilts about the pivot of the first mode. It remains in the can if it is in a ball around the pivot
-    that is in the can, so its upper face is narrower than the can. Where it has no room, as in a nearly full can, it is
-    too small to be seen.
+    The upper one tilts about the pivot of the first mode. It remains in the can if it is in a ball
+    around the pivot that is in the can, so its upper face is narrower than the can. Where it has no
+    room, as in a nearly full can, it is too small to be seen.
     """
     height = standing.height
     radius = standing.can.radius
@@ -213,7 +217,8 @@ def _fit_sizes(spec: mujoco.MjSpec, can: Can, assets: pathlib.Path) -> None:
 
 @functools.lru_cache(maxsize=32)
 def _read_mesh(path: pathlib.Path, content: bytes) -> tuple[Mesh, np.ndarray]:
-    """Return a mesh as MuJoCo reads it from a file of this content, and its places in a texture, as one row."""
+    """Return a mesh as MuJoCo reads it from a file of this content, and its places in a texture, as
+    one row."""
     spec = mujoco.MjSpec()
     spec.assets = {path.name: content}
     spec.add_mesh(name="mesh", file=path.name, inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL)
@@ -247,7 +252,8 @@ def _place_point_load(spec: mujoco.MjSpec, scene: Scene) -> None:
         arm.pos = [0, arm.pos[1], -offset / 2]
         arm.size = [thickness, max(offset / 2, thickness / 100), 0]
     else:
-        offset = min(offset, scene.can.radius - ball.size[0])  # A load on the rim is drawn just inside it.
+        # A load on the rim is drawn just inside it.
+        offset = min(offset, scene.can.radius - ball.size[0])
     if math.isnan(ball.fromto[0]):
         ball.pos = [0, ball.pos[1], -offset]
     else:
@@ -255,7 +261,8 @@ def _place_point_load(spec: mujoco.MjSpec, scene: Scene) -> None:
 
 
 def shape_beer(spec: mujoco.MjSpec, scene: Scene, edges: int = EDGES) -> None:
-    """Give the beer its fill, and put the foam on it, which is thin or missing where there is no room or no beer."""
+    """Give the beer its fill, and put the foam on it, which is thin or missing where there is no
+    room or no beer."""
     radius = scene.can.radius
     length = scene.can.length
     fill = max(scene.load.fill or 0.0, 1e-6)  # A mesh must not be flat.
@@ -266,7 +273,8 @@ def shape_beer(spec: mujoco.MjSpec, scene: Scene, edges: int = EDGES) -> None:
         places = shape.vertices[:, [0, 2]] / (2 * radius) + 0.5
         liquid.usertexcoord = (np.round(512 * places) / 512).ravel()
     _reshape(liquid, shape)
-    thickness = min(FOAM, fill / 2, (1 - fill) / 2)  # A quarter of the beer's depth, and of the room above it.
+    # At most a quarter of the beer's depth, and of the room above it.
+    thickness = min(FOAM, fill / 2, (1 - fill) / 2)
     foam = spec.mesh("foam")
     foam_geom = spec.geom("foam")
     if foam is not None and thickness >= 1e-4:  # What is thinner is not seen.
@@ -276,11 +284,13 @@ def shape_beer(spec: mujoco.MjSpec, scene: Scene, edges: int = EDGES) -> None:
 
 
 def beer(fill: float, radius: float, length: float, edges: int = EDGES) -> Mesh:
-    """Return the beer of a given `fill`, eq. (32), in a can of `radius` and `length` [m]: a prism along the axis."""
+    """Return the beer of a given `fill`, eq. (32), in a can of `radius` and `length` [m]: a prism
+    along the axis."""
     beta = segment(fill).half_angle
     angles = np.linspace(-beta, beta, edges + 1)
     if fill == 1:
-        angles = angles[:-1]  # The arc of a full can closes on itself, and its last vertex would repeat the first.
+        # The arc of a full can closes on itself, and its last vertex would repeat the first.
+        angles = angles[:-1]
     return _prism(radius * np.stack([np.sin(angles), -np.cos(angles)], axis=1), length)
 
 
@@ -293,9 +303,10 @@ def _foam(fill: float, thickness: float, radius: float, length: float) -> Mesh:
 
 
 def _prism(outline: np.ndarray, length: float) -> Mesh:
-    """Return the prism of a `length` [m] on a convex outline in (x, z), counter-clockwise seen from -y.
+    """Return the prism of a `length` [m] on a convex outline in (x, z).
 
-    The near face and the side from the last point to the first, which is the beer's surface, look flat.
+    The outline is counter-clockwise seen from -y. The near face and the side from the last point to
+    the first, which is the beer's surface, look flat.
     """
     n = len(outline)
     front = np.insert(outline, 1, -length / 2, axis=1)
@@ -310,7 +321,8 @@ def _prism(outline: np.ndarray, length: float) -> Mesh:
 
 
 def _strip(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Return the faces between two lines of as many vertices: first those with two corners on `one`, then the rest."""
+    """Return the faces between two lines of as many vertices: first those with two corners on
+    `one`, then the rest."""
     first = np.stack([one[:-1], one[1:], other[1:]], 1)
     rest = np.stack([one[:-1], other[1:], other[:-1]], 1)
     return np.concatenate([first, rest])

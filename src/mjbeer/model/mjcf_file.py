@@ -1,4 +1,5 @@
-"""MJCF files as trees: read, with what they include; compared with a scene's numbers; and given these numbers."""
+"""MJCF files as trees: read, with what they include; compared with a scene's numbers; and given
+these numbers."""
 
 import copy
 import functools
@@ -27,8 +28,8 @@ def read(path: pathlib.Path) -> ET.Element:
 def content(path: str) -> tuple[bytes, ...]:
     """Return the bytes of an MJCF file and of all files that it includes.
 
-    What is made from a file is kept by its content. Time and size are no substitute: an edit may leave both as they
-    were. To read a file takes some 5 us.
+    What is made from a file is kept by its content. Time and size are no substitute: an edit may
+    leave both as they were. To read a file takes some 5 us.
     """
     text = _text(path)
     included = _included(path, text)
@@ -41,7 +42,8 @@ def content(path: str) -> tuple[bytes, ...]:
 
 
 def _text(path: str) -> bytes:
-    """Return the bytes of a file: by the functions of the system, in half of the time that `open` takes."""
+    """Return the bytes of a file: by the functions of the system, in half of the time that `open`
+    takes."""
     try:
         descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_BINARY", 0))
         try:
@@ -77,7 +79,8 @@ def expand_includes(root: ET.Element, folder: pathlib.Path) -> None:
 def find(root: ET.Element, element: str) -> ET.Element | None:
     """Return an element by its tag and its name, as "joint slide".
 
-    "inertial can" is in the body "can", and "fixed slip/roll" is the joint "roll" of the tendon "slip".
+    "inertial can" is in the body "can", and "fixed slip/roll" is the joint "roll" of the tendon
+    "slip".
     """
     tag, _, name = element.partition(" ")
     name, _, joint = name.partition("/")
@@ -104,7 +107,8 @@ def write(root: ET.Element, values: Parameters, path: pathlib.Path, digits: int 
 
 
 def differences(root: ET.Element, values: Parameters) -> list[str]:
-    """Return the parameters that have other values, in 12 digits, in a tree; it must have all of them."""
+    """Return the parameters that have other values, in 12 digits, in a tree; it must have all of
+    them."""
     return [
         f"{name} {attribute}"
         for (name, attribute), value in values.items()
@@ -128,7 +132,7 @@ def remove(root: ET.Element, *paths: str) -> None:
 
 
 def remove_unused(root: ET.Element, acting: Collection[str], damped: bool) -> None:
-    """Remove what is only drawn or measured from a tree, and disable the stages of a step that it does not need.
+    """Remove what is only drawn or measured from a tree, and disable unneeded stages of a step.
 
     Of the tendons and the actuators those stay whose names are in `acting`.
     """
@@ -145,7 +149,8 @@ def remove_unused(root: ET.Element, acting: Collection[str], damped: bool) -> No
 
 
 def parse_spec(root: ET.Element, path: pathlib.Path) -> mujoco.MjSpec:
-    """Return the specification in the tree of the mechanics file at a `path`, whose includes are expanded first."""
+    """Return the specification in the tree of the mechanics file at a `path`, whose includes are
+    expanded first."""
     expand_includes(root, path.parents[1])
     try:
         return mujoco.MjSpec.from_string(ET.tostring(root, encoding="unicode"))

@@ -1,7 +1,8 @@
-"""The numbers of a scene in a setting: which mechanics file its model comes from, and what is written into this file.
+"""The numbers of a scene in a setting: its mechanics file, and what is written into it.
 
-Models of one `structure` have the same elements and differ in numbers only. `ModelNumbers.parameters` has these by
-element and attribute of MJCF, as `mjcf/README.md` lists them.
+Models of one `structure` have the same elements and differ in numbers only.
+`ModelNumbers.parameters` has these by element and attribute of MJCF, as `mjcf/README.md` lists
+them.
 """
 
 import math
@@ -19,12 +20,14 @@ from mjbeer.model.setting import MJBEER_INTEGRATORS, Rolling, Setting
 from mjbeer.theory.scene import Attachment, Scene
 
 _TOLERANCE = 1e-14
-"""The solver's tolerance divided by the square of gravity: it ends once an iteration gains less. MuJoCo's own 1e-8
-m^2/s^4 treats the weight of a light load as zero. 1e-14 takes no more time in the four scenes, 1e-18 a third more."""
+"""The solver's tolerance divided by the square of gravity: it ends once an iteration gains less.
+MuJoCo's own 1e-8 m^2/s^4 treats the weight of a light load as zero. 1e-14 takes no more time in the
+four scenes, 1e-18 a third more."""
 
 
 class Inertial(NamedTuple):
-    """The mass [kg] of a body, its distance below the axis [m], and its moment of inertia about itself [kg m^2]."""
+    """The mass [kg] of a body, its distance below the axis [m], and its moment of inertia about
+    itself [kg m^2]."""
 
     mass: float
     offset: float
@@ -72,13 +75,15 @@ class ModelNumbers:
 
     @property
     def _path(self) -> str:
-        """Return the path as a string, of which a pathlib.Path is made in more time than the file is read."""
+        """Return the path as a string, of which a pathlib.Path is made in more time than the file
+        is read."""
         name = f"{self.scene.attachment}_{self.setting.rolling}.xml"
         return os.path.join(self.setting.folder, "mechanics", name)
 
     @property
     def acting(self) -> tuple[str, ...]:
-        """Return the names of the tendons and the actuators that exert a force; only reduced models have any."""
+        """Return the names of the tendons and the actuators that exert a force; only reduced models
+        have any."""
         if self.setting.rolling != "reduced":
             return ()
         names = []
@@ -121,8 +126,8 @@ class ModelNumbers:
     def _height(self) -> float:
         """Return the height of the axis above the origin [m].
 
-        With the axis at the origin, an offset far smaller than the radius keeps its digits. Only a can that is drawn,
-        or in contact, must lie on the incline.
+        With the axis at the origin, an offset far smaller than the radius keeps its digits. Only a
+        can that is drawn, or in contact, must lie on the incline.
         """
         return self.scene.can.radius if self.setting.rolling == "contact" or self.visuals else 0.0
 
@@ -154,8 +159,9 @@ class ModelNumbers:
         if integrator in MJBEER_INTEGRATORS:
             return "RK4"  # It is not used, as they step by themselves.
         if integrator == "discrete" and self.setting.rolling == "reduced" and self.scene.damping_law:
-            # It takes the same steps, but solves for them by an iteration which treats forces below 3e-8 [N, N m] as
-            # zero: a load let go 1e-6 rad beside the top would stay there for ever.
+            # It takes the same steps, but solves for them by an iteration which treats forces below
+            # 3e-8 [N, N m] as zero: a load let go 1e-6 rad beside the top would stay there for
+            # ever.
             return "implicitfast"
         return integrator
 
@@ -213,8 +219,9 @@ class ModelNumbers:
     def _solver_tolerance(self) -> float:
         """Return the tolerance of the solver of a contact [m^2/s^4].
 
-        It is less for a light load, by what its weight gains over what that of all masses gains: a force squared
-        divided by an inertia. At a tolerance of 0 the solver would spend all its iterations on rounding.
+        It is less for a light load, by what its weight gains over what that of all masses gains: a
+        force squared divided by an inertia. At a tolerance of 0 the solver would spend all its
+        iterations on rounding.
         """
         scene = self.scene
         inertia = float(scene.oscillator.inertia(math.pi / 2))
@@ -223,11 +230,14 @@ class ModelNumbers:
 
 
 def stiffest(integrator: str, timestep: float, contact: bool = False) -> float:
-    """Return the time constant [s] of the stiffest critically damped constraint to use with an integrator.
+    """Return the time constant [s] of the stiffest constraint to use with an integrator.
 
-    Semi-implicit Euler, and what is like it, is stable for timesteps up to 0.83 time constants (4 - 4x - x^2 > 0 for
-    x = h/tau), and is given 0.5. RK4 is stable up to 2.7 and is given 2, which is stable with DOP853 too; "discrete"
-    has no limit. A `contact` opens and closes: with less than a timestep RK4 chatters.
+    The constraint is critically damped.
+
+    Semi-implicit Euler, and what is like it, is stable for timesteps up to 0.83 time constants (4 -
+    4x - x^2 > 0 for x = h/tau), and is given 0.5. RK4 is stable up to 2.7 and is given 2, which is
+    stable with DOP853 too; "discrete" has no limit. A `contact` opens and closes: with less than a
+    timestep RK4 chatters.
     """
     if integrator not in ("RK4", "discrete", "DOP853"):
         return 2 * timestep
@@ -235,14 +245,15 @@ def stiffest(integrator: str, timestep: float, contact: bool = False) -> float:
 
 
 def _frozen(scene: Scene) -> Inertial:
-    """Return can and load as one body on a hinge, phi, whose inertia base + chord sin^2(phi/2) is that of rolling.
+    """Return can and load as one body on a hinge, phi, with the inertia of rolling.
 
-    The file says how. The arms of the chord are 1 m long; any length gives the same inertia.
+    It is base + chord sin^2(phi/2); frozen_reduced.xml says how. The arms of the chord are 1 m
+    long; any length gives the same inertia.
     """
     base = scene.oscillator.base
     moment = scene.load.moment
-    # Any mass with the moment m b is right: the scene's at its centre of mass (38), or, where that has more than half
-    # of the inertia, a larger mass on a shorter arm that has half.
+    # Any mass with the moment m b is right: the scene's at its centre of mass (38), or, where that
+    # has more than half of the inertia, a larger mass on a shorter arm that has half.
     mass = max(scene.mass, 2 * moment**2 / base)
     return Inertial(mass, moment / mass, base - moment**2 / mass)
 
@@ -266,7 +277,8 @@ def _constrained(scene: Scene) -> dict[str, Inertial]:
             'rolling="reduced": MuJoCo moves no body without mass and inertia; give the can some, as '
             "can=Can.sheet_metal() or, on the command line, --can metal"
         )
-    # MuJoCo moves no point load. A mass on the axis moves with it exactly as with the can, and gives it an inertia.
+    # MuJoCo moves no point load. A mass on the axis moves with it exactly as with the can, and
+    # gives it an inertia.
     is_point = load.inertia < 1e-6 * load.mass * load.offset**2
     moved = min(can.mass / 2, load.mass) if is_point else 0.0
     return {

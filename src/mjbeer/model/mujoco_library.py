@@ -31,11 +31,12 @@ _saved: list[_Output] = []
 
 @contextmanager
 def quiet() -> Generator[None]:
-    """Stop MuJoCo from printing warnings, from writing MUJOCO_LOG.TXT, and from reading the clock for `mjData.timer`.
+    """Stop MuJoCo from printing warnings, from writing its log, and from reading the clock.
 
-    Errors are raised as usual. To read the clock takes longer than a step of a model with one or two joints. The
-    settings belong to the process: runs in several threads share them until the last one ends. To change them takes as
-    long as ten such steps: enter this once a run.
+    The log is MUJOCO_LOG.TXT, and the clock is for `mjData.timer`. Errors are raised as usual. To
+    read the clock takes longer than a step of a model with one or two joints. The settings belong
+    to the process: runs in several threads share them until the last one ends. To change them takes
+    as long as ten such steps: enter this once a run.
     """
     with _lock:
         _saved.append(_saved[0] if _saved else _exchange(_SILENT))
@@ -68,7 +69,8 @@ def _clock() -> ctypes.c_void_p:
 
 @functools.cache
 def library() -> ctypes.CDLL:
-    """Return the handle of the loaded library; opening the same file again gives the same library."""
+    """Return the handle of the loaded library; opening the same file again gives the same
+    library."""
     folder = pathlib.Path(mujoco.__file__).parent
     pattern = {"darwin": "libmujoco*.dylib", "win32": "mujoco.dll"}.get(sys.platform, "libmujoco.so*")
     return ctypes.CDLL(str(next(folder.glob(pattern))))

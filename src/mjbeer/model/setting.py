@@ -35,9 +35,11 @@ class Setting:
     """
 
     rolling: Rolling = "reduced"
-    """"reduced" (no constraint), "equality" (a joint equality) or "contact" (a cylinder on a plane)."""
+    """"reduced" (no constraint), "equality" (a joint equality) or "contact" (a cylinder on a
+    plane)."""
     integrator: Integrator = "RK4"
-    """One of MuJoCo's or mjbeer's; "GaussJackson" only with "reduced". With a tolerance it is not used."""
+    """One of MuJoCo's or mjbeer's; "GaussJackson" only with "reduced". With a tolerance it is not
+    used."""
     timestep: float = 1e-3
     """Timestep [s]; with a tolerance it is the sampling interval."""
     tolerance: float | None = None
@@ -45,7 +47,8 @@ class Setting:
     friction: float = FRICTION
     """Friction coefficient of a contact."""
     mjcf: str | os.PathLike[str] | None = None
-    """A folder of MJCF that is read instead of mjbeer's; None for that of the environment's MJBEER_MJCF, if any."""
+    """A folder of MJCF that is read instead of mjbeer's; None for that of the environment's
+    MJBEER_MJCF, if any."""
     folder: pathlib.Path = field(init=False, repr=False)
     """The folder of MJCF that is read."""
 
@@ -74,7 +77,8 @@ class Setting:
 
     @classmethod
     def of(cls, integrator: Integrator | None, tolerance: float | None, **fields: Any) -> "Setting":
-        """Return the setting of a call that gives an integrator, or a tolerance, which chooses its own, or neither."""
+        """Return the setting of a call that gives an integrator, or a tolerance, which chooses its
+        own, or neither."""
         stepped_by = cls.integrator if integrator is None else integrator
         setting = cls(integrator=stepped_by, tolerance=tolerance, **fields)
         if tolerance is not None and integrator is not None:
@@ -83,12 +87,14 @@ class Setting:
 
 
 def supported(scene: Scene, rolling: str) -> bool:
-    """Return whether MuJoCo can model a scene with this way of rolling: it cannot move a massless body."""
+    """Return whether MuJoCo can model a scene with this way of rolling: it cannot move a massless
+    body."""
     return rolling == "reduced" or scene.can.mass > 0 or scene.attachment == "frozen"
 
 
 def mjcf_folder(given: str | os.PathLike[str] | None = None) -> pathlib.Path:
-    """Return the folder of MJCF that is read: the one that is `given`, or that of the environment, or mjbeer's own."""
+    """Return the folder of MJCF that is read: the one that is `given`, or that of the environment,
+    or mjbeer's own."""
     folder = os.environ.get("MJBEER_MJCF") if given is None else given
     if folder is None:
         return _MJBEER_FOLDER
@@ -99,7 +105,8 @@ def mjcf_folder(given: str | os.PathLike[str] | None = None) -> pathlib.Path:
 
 
 def _find_mjbeer_folder() -> pathlib.Path:
-    """Return the folder of MJCF that comes with mjbeer: a wheel has it inside, a checkout at its top."""
+    """Return the folder of MJCF that comes with mjbeer: a wheel has it inside, a checkout at its
+    top."""
     package = pathlib.Path(__file__).parents[1]
     inside = package / "mjcf"
     return inside if inside.is_dir() else package.parents[1] / "mjcf"
