@@ -78,6 +78,24 @@ def test_keyframes_move_as_theory_says(name: str, key: str) -> None:
     assert not any(warning.number for warning in data.warning)
 
 
+@pytest.mark.parametrize("name", FILES)
+def test_all_cans_that_roll_have_three_keyframes(name: str) -> None:
+    keys = {key for file, key in KEYS if file == name}
+    assert {"home", "equilibrium", "swing"} <= keys
+    model = load(name)
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, model.key("home").id)
+    assert phi(model, data) == (0, 0)
+
+
+@pytest.mark.parametrize("path", sorted(OWN.rglob("*.xml")), ids=lambda path: path.stem)
+def test_a_file_has_one_worldbody_and_one_element_a_line(path: pathlib.Path) -> None:
+    text = path.read_text()
+    assert text.count("<worldbody>") <= 1
+    without_comments = re.sub("<!--.*?-->", "", text, flags=re.DOTALL)
+    assert max(line.count("<") for line in without_comments.splitlines()) == 1
+
+
 @pytest.mark.parametrize(("key", "duration", "height"), [("hop", 0.43, 1e-6), ("push", 0.3, 0.02)])
 def test_the_hoop_hops(key: str, duration: float, height: float) -> None:
     """By 15 um let go, by a radius of 33 mm pushed; a penetration would be negative."""

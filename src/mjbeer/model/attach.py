@@ -1,5 +1,4 @@
-"""Attaches a can that is free in space to another world, fills it anew, and says what that world
-spoils."""
+"""Attaches a can to another world, fills it anew, and says what that world spoils."""
 
 import math
 import warnings
@@ -120,12 +119,11 @@ def _integrator_name(option: mujoco.MjOption) -> str:
 def refill(model: mujoco.MjModel, can: Standing | Scene, prefix: str = "can-") -> None:
     """Give a can in a compiled model another fill or liquid, in place.
 
-    The new can must be as large, with as many modes.
-
-    It is the can that was attached under the `prefix`, or, with an empty one, that of a model of a
-    standing can. Data keep their state, and have the new accelerations from the next `mj_step` or
-    `mj_forward` on. A standing can is drawn with the new fill, a lying one still with the old. An
-    `UntrustedWarning` says what the model's options spoil.
+    The new can must be as large, with as many modes. The old one is the can that was attached under
+    the `prefix`, or, with an empty one, that of a model of a standing can. Data keep their state,
+    and have the new accelerations from the next `mj_step` or `mj_forward` on. A standing can is
+    drawn with the new fill, a lying one still with the old. An `UntrustedWarning` says what the
+    model's options spoil.
 
     Raises:
       ParameterError: if the model has no such can.
@@ -137,7 +135,8 @@ def refill(model: mujoco.MjModel, can: Standing | Scene, prefix: str = "can-") -
     _require_same_can(model, can, prefix, spec)
     for joint in spec.joints:
         if joint.name != "swing" and min(spec.body(joint.name).inertia) < mujoco.mjMINVAL:
-            raise UnsupportedError(f"MuJoCo moves no pendulum of less than {mujoco.mjMINVAL:g} kg m^2, as of {can}")
+            least = f"{mujoco.mjMINVAL:g} kg m^2"
+            raise UnsupportedError(f"MuJoCo moves no pendulum of less than {least}, as of {can}")
     for name in _PARTS:
         filled = spec.body(name)
         if filled is not None:
@@ -173,10 +172,12 @@ def _require_same_can(model: mujoco.MjModel, can: Standing | Scene, prefix: str,
     kinds = (mujoco.mjtObj.mjOBJ_BODY, mujoco.mjtObj.mjOBJ_JOINT)
     there = [name for name in _PARTS if any(_has(model, kind, f"{prefix}{name}") for kind in kinds)]
     size = [can.can.radius, can.can.length / 2]  # written to MJCF with 6 digits or more
-    if there != needed or not np.allclose(model.geom(f"{prefix}can").size[:2], size, rtol=1e-6, atol=0):
+    has_parts = there == needed
+    if not has_parts or not np.allclose(model.geom(f"{prefix}can").size[:2], size, rtol=1e-6, atol=0):
         raise ParameterError(
-            f"the model must have a can under the prefix {require.format_value(prefix)} with radius and half length "
-            f"{size} m and with {', '.join(needed)}; it has {', '.join(there) or 'none'}, "
+            f"the model must have a can under the prefix {require.format_value(prefix)} with radius "
+            f"and half length {size} m and with {', '.join(needed)}; "
+            f"it has {', '.join(there) or 'none'}, "
             f"got {require.format_value(can)}"
         )
 
@@ -229,8 +230,7 @@ def _mass_bounds(compiler: mujoco.MjsCompiler, child: mujoco.MjSpec) -> list[str
 
 
 def _fastest_decay(can: Standing | Scene) -> float:
-    """Return the largest rate [1/s] at which damping slows the spin of a bob, or of a can on its
-    load.
+    """Return the largest rate [1/s] at which damping slows the spin of a bob or of a can.
 
     Where damping grows with the rate, it is that at the frequency of the first mode, or at
     sqrt(g/a): thrown at 1 m/s, 0 of 1,976 cans diverge under RK4 up to its limit, and 510 of 1,112

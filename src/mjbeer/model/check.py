@@ -1,5 +1,4 @@
-"""Compares the accelerations of a model with those of theory, from which an edited file may
-differ."""
+"""Compares the accelerations of a model with those of theory: a file may be edited."""
 
 import copy
 import functools
@@ -208,8 +207,7 @@ class _Equations(NamedTuple):
 
 
 def _evaluate(model: mujoco.MjModel, scene: Scene, rolling: Rolling, probes: Coordinates) -> _Equations | str:
-    """Return the equations of motion of a model at states of rolling, or which constraints it has
-    that it must not."""
+    """Return a model's equations of motion at states of rolling, or which constraint is wrong."""
     model = copy.copy(model)
     # "discrete" has changes over a whole step.
     model.opt.integrator = mujoco.mjtIntegrator.mjINT_RK4

@@ -33,8 +33,7 @@ def _tendon_armature(model: mujoco.MjModel, name: str) -> list[np.ndarray]:
 
 
 def _coefficient(model: mujoco.MjModel, name: str) -> list[np.ndarray]:
-    """Return where the coefficient of a joint in a fixed tendon is, by a name such as
-    "slip/roll"."""
+    """Return where the coefficient of a joint in a tendon is, by a name such as "slip/roll"."""
     tendon, joint = name.split("/")
     first = int(model.tendon_adr[model.tendon(tendon).id])
     place = first + list(model.wrap_objid[first:]).index(model.joint(joint).id)
@@ -68,7 +67,7 @@ _VIEWS: dict[tuple[str, str], Callable[[mujoco.MjModel, str], list[np.ndarray]]]
 
 
 def compiled_views(model: mujoco.MjModel, values: Parameters) -> Views:
-    """Return where a compiled model has those parameters that differ from scene to scene, except
+    """Return where a compiled model has the parameters that differ between scenes, except
     options."""
     views = {}
     for element, attribute in values:

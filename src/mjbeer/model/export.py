@@ -1,5 +1,4 @@
-"""A scene made ready for MuJoCo's viewer, and written as one stand-alone MJCF file, for MuJoCo 4 or
-for others too."""
+"""Writes a scene as one stand-alone MJCF file, for MuJoCo 4 or for others too."""
 
 import os
 import xml.etree.ElementTree as ET
@@ -95,8 +94,7 @@ def export(
 
 
 def _text(spec: mujoco.MjSpec) -> str:
-    """Return the specification as XML with 17 digits, which give all doubles back; MuJoCo's default
-    is 6."""
+    """Return a specification as XML with all 17 digits of doubles; MuJoCo's default is 6."""
     before = library()._mjPRIVATE__get_xml_precision()
     library()._mjPRIVATE__set_xml_precision(17)
     try:
@@ -106,8 +104,7 @@ def _text(spec: mujoco.MjSpec) -> str:
 
 
 def _remove_breaking_waves(spec: mujoco.MjSpec) -> None:
-    """Leave a standing can only the damping in proportion to the rate: MuJoCo 3.3 knows no
-    other."""
+    """Leave only the damping in proportion to the rate: MuJoCo 3.3 knows no other."""
     for joint in spec.joints:
         joint.damping = [joint.damping[0], 0, 0]
 
@@ -152,8 +149,7 @@ def _portable(text: str, model: mujoco.MjModel) -> str:
 
 
 def _dissolve_frames(root: ET.Element, model: mujoco.MjModel) -> None:
-    """Replace each frame by its elements, at their places in the body: dm_control does not know
-    frames."""
+    """Replace each frame by its elements: dm_control does not know frames."""
     for parent in list(root.iter()):
         for place, frame in reversed(list(enumerate(parent))):
             if frame.tag == "frame":

@@ -35,8 +35,8 @@ RK4."""
 
 
 def standing_spec(can: Standing, setting: Setting, visuals: bool, free: bool) -> mujoco.MjSpec:
-    """Return the specification of a standing can; one that is not `free` has neither a free joint
-    nor a floor."""
+    """Return the specification of a standing can; only a `free` one has a free joint and a
+    floor."""
     integrator = require.choice("integrator", setting.integrator, MUJOCO_INTEGRATORS)
     root, path = _read_mechanics("standing", setting.folder)
     if not free:
@@ -51,8 +51,7 @@ def standing_spec(can: Standing, setting: Setting, visuals: bool, free: bool) ->
 
 
 def attached_spec(can: Standing | Scene, visuals: bool = True) -> mujoco.MjSpec:
-    """Return the specification of a can that is to be attached to another world: it has no free
-    joint yet."""
+    """Return the specification of a can that is to be attached; it has no free joint yet."""
     if not isinstance(can, Scene):
         require.instance("can", can, Standing)
         return standing_spec(can, Setting(), visuals, free=False)
@@ -70,8 +69,7 @@ def attached_spec(can: Standing | Scene, visuals: bool = True) -> mujoco.MjSpec:
 
 
 def _read_mechanics(name: str, folder: pathlib.Path) -> tuple[ET.Element, pathlib.Path]:
-    """Return a mechanics file without keyframes, and its path; numbers that somebody has changed
-    are an error."""
+    """Return a mechanics file without keyframes, and its path; edited numbers are an error."""
     path = folder / "mechanics" / f"{name}.xml"
     root = mjcf_file.read(path)
     edited = mjcf_file.differences(root, _paper_parameters(name))
@@ -181,8 +179,7 @@ def standing_parameters(can: Standing) -> Parameters:
 
 
 def _fixed_liquid(can: Standing, bobs: Pendulums) -> Parameters:
-    """Return the inertial of the liquid that does not slosh: its moments are those of theory less
-    those of the bobs."""
+    """Return the inertial of what does not slosh: the moments of theory less those of the bobs."""
     middle = can.height / 2
     places = bobs.pivots - middle - bobs.arms
     sloshing = [
@@ -229,8 +226,7 @@ def _paper_parameters(name: str) -> Parameters:
 
 
 def _inertial(body: str, mass: float, height: float, inertia: tuple[float, float, float]) -> Parameters:
-    """Return mass, centre of mass at a `height` and moments of inertia about x, y and z of a
-    body."""
+    """Return the mass of a body, its centre of mass, and its inertia about x, y and z."""
     element = f"inertial {body}"
     return {
         (element, "mass"): (mass,),

@@ -46,22 +46,19 @@ def reset(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, phi0: float,
 
 @functools.lru_cache(maxsize=32)
 def joint_addresses(model: mujoco.MjModel) -> dict[str, int]:
-    """Return the index of each joint's coordinate in qpos, which is that of its rate in qvel
-    too."""
+    """Return the index of each joint's coordinate in qpos, and of its rate in qvel: the same."""
     joints = [model.joint(joint) for joint in range(model.njnt)]
     return {joint.name: int(joint.qposadr[0]) for joint in joints}
 
 
 def initial_joints(joints: Iterable[str], scene: Scene, phi0: float, phi_dot0: float) -> np.ndarray:
-    """Return positions and rates of joints at a start, shape (2, joints); a joint that is not a
-    scene's is at 0."""
+    """Return positions and rates of joints at a start, shape (2, joints); other joints are at 0."""
     values = _start_values(scene, phi0, phi_dot0)
     return np.array([values.get(name, (0.0, 0.0)) for name in joints]).T
 
 
 def initial_state(model: mujoco.MjModel, scene: Scene, phi0: float, phi_dot0: float) -> np.ndarray:
-    """Return qpos and qvel of a start at `phi0` [rad] with `phi_dot0` [rad/s], as one array of
-    shape (nq + nv,)."""
+    """Return qpos and qvel at `phi0` [rad] with `phi_dot0` [rad/s], shape (nq + nv,)."""
     return initial_joints(joint_addresses(model), scene, phi0, phi_dot0).ravel()
 
 
@@ -77,14 +74,13 @@ def to_states(model: mujoco.MjModel, motion: Coordinates) -> np.ndarray:
 
 
 def to_coordinates(model: mujoco.MjModel, scene: Scene, states: np.ndarray, times: np.ndarray) -> Coordinates:
-    """Return the coordinates for states of shape (samples, nq + nv) at `times` [s], shape
+    """Return the coordinates of states, shape (samples, nq + nv), at `times` [s], shape
     (samples,)."""
     joints = joint_addresses(model)
     radius = scene.can.radius
 
     def joint_values(name: str) -> np.ndarray:
-        """Return the positions and the rates of a joint, shape (2, samples); zeros if there is
-        none."""
+        """Return positions and rates of a joint, shape (2, samples); zeros if there is none."""
         if name not in joints:
             return np.zeros((2, len(states)))
         return states.T[joints[name] :: model.nq].copy()
@@ -107,8 +103,7 @@ def to_coordinates(model: mujoco.MjModel, scene: Scene, states: np.ndarray, time
 
 
 def rolling_coordinates(radius: float, u: Any, u_dot: Any, phi: Any, phi_dot: Any) -> Coordinates:
-    """Return the coordinates of a can that rolls without slipping, in contact; u is in [m], phi in
-    [rad]."""
+    """Return the coordinates of a can that rolls without slipping; u is in [m], phi in [rad]."""
     nothing = 0 * phi
     return Coordinates(
         time=nothing,

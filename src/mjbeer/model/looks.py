@@ -78,8 +78,7 @@ def name(can: Scene | Standing) -> str:
 
 
 def drawn_spec(root: ET.Element, path: pathlib.Path, can: Scene | Standing) -> mujoco.MjSpec:
-    """Return the specification in the tree of the mechanics file at a `path`, with the looks of a
-    can."""
+    """Return the specification of a mechanics file, the tree from a `path`, with a can's looks."""
     folder = path.parents[1]
     add_looks(root, name(can), folder)
     spec = mjcf_file.parse_spec(root, path)
@@ -154,8 +153,7 @@ def _fit_to_scene(spec: mujoco.MjSpec, scene: Scene) -> None:
 
 
 def _fit_to_standing(spec: mujoco.MjSpec, standing: Standing) -> None:
-    """Fit what is drawn to a standing can: a column of beer under a cylinder that tilts with the
-    body "slosh1"."""
+    """Fit what is drawn to a standing can: the can, and the cylinders of its beer."""
     for wall in _UPRIGHT_GEOMS:
         spec.geom(wall).pos = [0, 0, standing.can.length / 2]
     for beer_geom, cylinder in beer_column(standing).items():
@@ -217,8 +215,8 @@ def _fit_sizes(spec: mujoco.MjSpec, can: Can, assets: pathlib.Path) -> None:
 
 @functools.lru_cache(maxsize=32)
 def _read_mesh(path: pathlib.Path, content: bytes) -> tuple[Mesh, np.ndarray]:
-    """Return a mesh as MuJoCo reads it from a file of this content, and its places in a texture, as
-    one row."""
+    """Return a mesh as MuJoCo reads a file of this content, and its texture coordinates, as one
+    row."""
     spec = mujoco.MjSpec()
     spec.assets = {path.name: content}
     spec.add_mesh(name="mesh", file=path.name, inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL)
@@ -261,8 +259,7 @@ def _place_point_load(spec: mujoco.MjSpec, scene: Scene) -> None:
 
 
 def shape_beer(spec: mujoco.MjSpec, scene: Scene, edges: int = EDGES) -> None:
-    """Give the beer its fill, and put the foam on it, which is thin or missing where there is no
-    room or no beer."""
+    """Give the beer its fill, and put foam on it, thinner where there is little room or beer."""
     radius = scene.can.radius
     length = scene.can.length
     fill = max(scene.load.fill or 0.0, 1e-6)  # A mesh must not be flat.
@@ -284,8 +281,7 @@ def shape_beer(spec: mujoco.MjSpec, scene: Scene, edges: int = EDGES) -> None:
 
 
 def beer(fill: float, radius: float, length: float, edges: int = EDGES) -> Mesh:
-    """Return the beer of a given `fill`, eq. (32), in a can of `radius` and `length` [m]: a prism
-    along the axis."""
+    """Return the beer of a `fill`, eq. (32), in a can of `radius` and `length` [m]: a prism."""
     beta = segment(fill).half_angle
     angles = np.linspace(-beta, beta, edges + 1)
     if fill == 1:
@@ -321,8 +317,7 @@ def _prism(outline: np.ndarray, length: float) -> Mesh:
 
 
 def _strip(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Return the faces between two lines of as many vertices: first those with two corners on
-    `one`, then the rest."""
+    """Return the faces between two lines of as many vertices."""
     first = np.stack([one[:-1], one[1:], other[1:]], 1)
     rest = np.stack([one[:-1], other[1:], other[:-1]], 1)
     return np.concatenate([first, rest])

@@ -1,5 +1,4 @@
-"""MJCF files as trees: read, with what they include; compared with a scene's numbers; and given
-these numbers."""
+"""Reads MJCF files as trees, compares them with a scene's numbers, and writes these numbers."""
 
 import copy
 import functools
@@ -42,8 +41,7 @@ def content(path: str) -> tuple[bytes, ...]:
 
 
 def _text(path: str) -> bytes:
-    """Return the bytes of a file: by the functions of the system, in half of the time that `open`
-    takes."""
+    """Return the bytes of a file, by system calls, in half of the time that `open` takes."""
     try:
         descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_BINARY", 0))
         try:
@@ -107,8 +105,7 @@ def write(root: ET.Element, values: Parameters, path: pathlib.Path, digits: int 
 
 
 def differences(root: ET.Element, values: Parameters) -> list[str]:
-    """Return the parameters that have other values, in 12 digits, in a tree; it must have all of
-    them."""
+    """Return the parameters that have other values in a tree, or none, compared in 12 digits."""
     return [
         f"{name} {attribute}"
         for (name, attribute), value in values.items()
@@ -149,8 +146,7 @@ def remove_unused(root: ET.Element, acting: Collection[str], damped: bool) -> No
 
 
 def parse_spec(root: ET.Element, path: pathlib.Path) -> mujoco.MjSpec:
-    """Return the specification in the tree of the mechanics file at a `path`, whose includes are
-    expanded first."""
+    """Return the specification of a mechanics file, the tree from a `path`, with its includes."""
     expand_includes(root, path.parents[1])
     try:
         return mujoco.MjSpec.from_string(ET.tostring(root, encoding="unicode"))

@@ -26,8 +26,7 @@ four scenes, 1e-18 a third more."""
 
 
 class Inertial(NamedTuple):
-    """The mass [kg] of a body, its distance below the axis [m], and its moment of inertia about
-    itself [kg m^2]."""
+    """A body's mass [kg], distance below the axis [m], and inertia about itself [kg m^2]."""
 
     mass: float
     offset: float
@@ -75,15 +74,13 @@ class ModelNumbers:
 
     @property
     def _path(self) -> str:
-        """Return the path as a string, of which a pathlib.Path is made in more time than the file
-        is read."""
+        """Return the path as a string: a pathlib.Path takes longer to make than the file to read."""
         name = f"{self.scene.attachment}_{self.setting.rolling}.xml"
         return os.path.join(self.setting.folder, "mechanics", name)
 
     @property
     def acting(self) -> tuple[str, ...]:
-        """Return the names of the tendons and the actuators that exert a force; only reduced models
-        have any."""
+        """Return the tendons and the actuators that exert a force; only reduced models have any."""
         if self.setting.rolling != "reduced":
             return ()
         names = []

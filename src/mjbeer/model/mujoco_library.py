@@ -69,8 +69,7 @@ def _clock() -> ctypes.c_void_p:
 
 @functools.cache
 def library() -> ctypes.CDLL:
-    """Return the handle of the loaded library; opening the same file again gives the same
-    library."""
+    """Return the handle of the loaded library: to open its file again gives the same one."""
     folder = pathlib.Path(mujoco.__file__).parent
     pattern = {"darwin": "libmujoco*.dylib", "win32": "mujoco.dll"}.get(sys.platform, "libmujoco.so*")
     return ctypes.CDLL(str(next(folder.glob(pattern))))

@@ -77,8 +77,7 @@ class Setting:
 
     @classmethod
     def of(cls, integrator: Integrator | None, tolerance: float | None, **fields: Any) -> "Setting":
-        """Return the setting of a call that gives an integrator, or a tolerance, which chooses its
-        own, or neither."""
+        """Return the setting of a call that gives an integrator, or a tolerance, or neither."""
         stepped_by = cls.integrator if integrator is None else integrator
         setting = cls(integrator=stepped_by, tolerance=tolerance, **fields)
         if tolerance is not None and integrator is not None:
@@ -87,14 +86,12 @@ class Setting:
 
 
 def supported(scene: Scene, rolling: str) -> bool:
-    """Return whether MuJoCo can model a scene with this way of rolling: it cannot move a massless
-    body."""
+    """Return whether MuJoCo can roll a scene in this way: it cannot move a massless body."""
     return rolling == "reduced" or scene.can.mass > 0 or scene.attachment == "frozen"
 
 
 def mjcf_folder(given: str | os.PathLike[str] | None = None) -> pathlib.Path:
-    """Return the folder of MJCF that is read: the one that is `given`, or that of the environment,
-    or mjbeer's own."""
+    """Return the folder of MJCF: the one that is `given`, or the environment's, or mjbeer's own."""
     folder = os.environ.get("MJBEER_MJCF") if given is None else given
     if folder is None:
         return _MJBEER_FOLDER
@@ -105,8 +102,7 @@ def mjcf_folder(given: str | os.PathLike[str] | None = None) -> pathlib.Path:
 
 
 def _find_mjbeer_folder() -> pathlib.Path:
-    """Return the folder of MJCF that comes with mjbeer: a wheel has it inside, a checkout at its
-    top."""
+    """Return mjbeer's own folder of MJCF: a wheel has it inside, a checkout at its top."""
     package = pathlib.Path(__file__).parents[1]
     inside = package / "mjcf"
     return inside if inside.is_dir() else package.parents[1] / "mjcf"
