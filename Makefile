@@ -22,7 +22,7 @@ help:
 	@echo "make lint         runs ruff, the type checker, and import-linter, which is for those who change something"
 	@echo "make search       makes 2,000 random runs, of which none may be wrong without saying so"
 	@echo "make renders      draws the animated pictures of the README anew"
-	@echo "make templates    writes the files of mjcf/ that a viewer opens, from its mechanics and looks"
+	@echo "make templates    writes the files of mjcf/ that a viewer opens, and the digests of its mechanics"
 	@echo "make tables       writes the tables of the documents anew"
 	@echo "make api          writes a reference of all functions from their docstrings: build/api/index.html"
 	@echo "make portability  tries exported models in other tools (an hour, 1.5 GB)"

@@ -22,7 +22,7 @@ from mjbeer import Can, Load, MjbeerError, Scene, Trajectory, build, exact, froz
 from mjbeer.drawing import film, video
 from mjbeer.exceptions import ParameterError
 from mjbeer.model.export import export
-from mjbeer.model.setting import INTEGRATORS, OWN, ROLLINGS, Setting
+from mjbeer.model.setting import MJBEER_INTEGRATORS, MUJOCO_INTEGRATORS, ROLLINGS, Setting
 from mjbeer.require import format_value
 from mjbeer.theory.scene import ATTACHMENTS
 
@@ -216,6 +216,6 @@ def test_a_simulation_answers_or_refuses(
     scene: Scene, start: tuple[float, float], timestep: float, friction: float, data: st.DataObject
 ) -> None:
     """A few steps of whatever size, of whatever scene: no warning, no NaN, and no fault of MuJoCo's that gets out."""
-    how = data.draw(st.sampled_from(ROLLINGS)), data.draw(st.sampled_from((*INTEGRATORS, *OWN)))
+    how = data.draw(st.sampled_from(ROLLINGS)), data.draw(st.sampled_from((*MUJOCO_INTEGRATORS, *MJBEER_INTEGRATORS)))
     with contextlib.suppress(MjbeerError):
         use(simulate(scene, 5 * timestep, *start, *how, timestep, friction=friction))

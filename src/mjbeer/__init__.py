@@ -24,9 +24,9 @@ from mjbeer.theory.trajectory import Trajectory, exact
 
 if TYPE_CHECKING:
     from mjbeer.drawing.video import render
+    from mjbeer.model.attach import attach, refill
     from mjbeer.model.build import build, specify
     from mjbeer.model.export import export
-    from mjbeer.model.free import attach, refill
     from mjbeer.model.joints import reset
     from mjbeer.simulation.run import Run
     from mjbeer.simulation.simulate import simulate
@@ -73,7 +73,7 @@ __all__ = [
 
 # Imported on first use, so that the exact theory works without MuJoCo.
 _LAZY = {
-    "model.free": ("attach", "refill"),
+    "model.attach": ("attach", "refill"),
     "model.build": ("build", "specify"),
     "model.export": ("export",),
     "model.joints": ("reset",),

@@ -23,7 +23,7 @@ from mjbeer import (
     standing,
 )
 from mjbeer.exceptions import MjbeerError, ParameterError, UnsupportedError
-from mjbeer.model import free
+from mjbeer.model import attach as attaching
 from mjbeer.model.mujoco_library import quiet
 from mjbeer.theory.standing import Standing
 from tests.support.scenes import METAL
@@ -73,7 +73,6 @@ def test_cans_are_attached_and_stand_and_lie() -> None:
         assert data.body(f"{name}-can").xpos == pytest.approx(place, abs=depth)
         assert abs(data.body(f"{name}-can").xmat[8] - 1) < 1e-6
     assert data.sensor("can-slosh2_up").data == pytest.approx([0, 0, 1], abs=1e-6)
-    assert data.sensor("can-slosh1_rise").data[:2] == pytest.approx([0, 0], abs=1e-6)
 
 
 def test_a_can_may_be_fixed_to_a_body() -> None:
@@ -140,7 +139,8 @@ def test_the_timestep_that_rk4_is_given_is_the_limit() -> None:
     for can in (standing(modes=3, damping_ratio=0.3), HONEY):
         for share, diverges in ((0.97, False), (1.03, True)):
             spec = mujoco.MjSpec()
-            spec.option.timestep, spec.option.integrator = share * free._RK4 / free._fastest_decay(can), RK4
+            spec.option.timestep = share * attaching._RK4_STABLE / attaching._fastest_decay(can)
+            spec.option.integrator = RK4
             if diverges:
                 with pytest.warns(UntrustedWarning, match="its damping may diverge at"):
                     attach(spec, can)

@@ -13,11 +13,11 @@ from hypothesis import strategies as st
 import mjbeer
 from mjbeer import Can, Load, Scene, build, frozen, hoop, pendulum, simulate, sliding
 from mjbeer.exceptions import ParameterError, UnsupportedError
-from mjbeer.model.build import compile_spec, compiled_model, rolling_spec, write_numbers
+from mjbeer.model.build import compiled_model, rolling_spec, write_numbers
+from mjbeer.model.compiled_numbers import compiled_views
 from mjbeer.model.joints import joint_addresses, to_coordinates
-from mjbeer.model.mechanics import Mechanics
-from mjbeer.model.mjcf_file import compiled_views
-from mjbeer.model.setting import INTEGRATORS, ROLLINGS, MujocoIntegrator, Rolling, Setting, supported
+from mjbeer.model.model_numbers import ModelNumbers
+from mjbeer.model.setting import MUJOCO_INTEGRATORS, ROLLINGS, MujocoIntegrator, Rolling, Setting, supported
 from mjbeer.theory.can import Damping
 from mjbeer.theory.equations import accelerations
 from tests.support.scenes import METAL, SCENES, scenes
@@ -74,12 +74,12 @@ def assert_theory(model: mujoco.MjModel, scene: Scene, phi: float, phi_dot: floa
 
 def written(scene: Scene, setting: Setting) -> mujoco.MjModel:
     """A skeleton that had the numbers of other scenes before."""
-    made = Mechanics(scene, setting)
+    made = ModelNumbers(scene, setting)
     model = compiled_model(made)
     data, views = mujoco.MjData(model), compiled_views(model, made.parameters)
     braked = replace(scene, drag=scene.drag + 1.0, gravity=5.0) if scene.dissipates else replace(scene, incline=0.1)
     for other in (scene, braked, scene):
-        if (before := Mechanics(other, setting)).structure == made.structure:
+        if (before := ModelNumbers(other, setting)).structure == made.structure:
             write_numbers(model, data, before, views)
     return model
 
@@ -117,8 +117,9 @@ def test_a_skeleton_is_the_model_that_is_compiled_for_its_scene(scene: Scene, ro
     """Softness too, which accelerations do not show; the steps have the same bits. And the other scenes are gone."""
     if not supported(scene, rolling):
         return
-    setting, ways = Setting(rolling, "implicit", 2e-4, friction=0.7), []
-    for model in (written(scene, setting), compile_spec(rolling_spec(scene, setting), rolling == "equality")):
+    how = {"rolling": rolling, "integrator": "implicit", "timestep": 2e-4, "friction": 0.7}
+    ways = []
+    for model in (written(scene, Setting(**how)), build(scene, **how)):
         data = mujoco.MjData(model)
         mjbeer.reset(model, data, scene, 0.7, 3.0)
         for _ in range(20):
@@ -134,10 +135,10 @@ def test_models_with_other_elements_have_another_structure_and_no_others(monkeyp
     """
     scenes = sliding(can=METAL), sliding(can=METAL, damping=1e-3), sliding(can=METAL, drag=1e-3)
     for rolling in ROLLINGS:  # with a constraint, all damping is that of joints
-        structures = [Mechanics(scene, Setting(rolling)).structure for scene in scenes]
+        structures = [ModelNumbers(scene, Setting(rolling)).structure for scene in scenes]
         assert structures[0] not in structures[1:]
         assert (structures[1] == structures[2]) == (rolling != "reduced")
-    assert len({Mechanics(frozen(), Setting("equality", each)).structure for each in INTEGRATORS}) == 1
+    assert len({ModelNumbers(frozen(), Setting("equality", each)).structure for each in MUJOCO_INTEGRATORS}) == 1
     simulate(sliding(), 0.01, 1.0)
     monkeypatch.setattr("mjbeer.model.build.rolling_spec", None)
     simulate(sliding(fill=0.3), 0.01, 1.0)

@@ -22,7 +22,7 @@ from mjbeer.exceptions import OutputError, ParameterError, UnsupportedError
 from mjbeer.model.build import add_start, build, rolling_spec
 from mjbeer.model.export import export
 from mjbeer.model.joints import initial_state, to_coordinates
-from mjbeer.model.setting import INTEGRATORS, OWN, ROLLINGS, Rolling, Setting, supported
+from mjbeer.model.setting import MJBEER_INTEGRATORS, MUJOCO_INTEGRATORS, ROLLINGS, Rolling, Setting, supported
 from mjbeer.theory.can import Damping
 from mjbeer.theory.equations import kinetic_energy
 from tests.support.scenes import METAL, SCENES
@@ -142,7 +142,7 @@ def test_cans_of_every_size(
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("integrator", INTEGRATORS)
+@pytest.mark.parametrize("integrator", MUJOCO_INTEGRATORS)
 def test_what_was_asked_for_arrives(integrator: str, tmp_path: pathlib.Path) -> None:
     scene = pendulum(-0.7, gravity=1.62)
     for rolling in ROLLINGS:
@@ -157,7 +157,11 @@ def test_what_was_asked_for_arrives(integrator: str, tmp_path: pathlib.Path) -> 
 @pytest.mark.parametrize(
     ("arguments", "error", "message"),
     [
-        ({"integrator": OWN[0]}, ParameterError, f"integrator must be one of 'Euler', .*; got '{OWN[0]}'"),
+        (
+            {"integrator": MJBEER_INTEGRATORS[0]},
+            ParameterError,
+            f"integrator must be one of 'Euler', .*; got '{MJBEER_INTEGRATORS[0]}'",
+        ),
         ({"path": "x.XML"}, ParameterError, r"the name of the MJCF file must end in \.xml, got 'x\.XML'"),
         ({"path": "file/model.xml"}, OutputError, r"cannot write .*model\.xml"),
         (

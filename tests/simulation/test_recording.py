@@ -8,7 +8,7 @@ import pytest
 
 from mjbeer import Scene, frozen, pendulum, sliding
 from mjbeer.model.setting import Setting
-from mjbeer.simulation.methods import fixed_method, mechanics
+from mjbeer.simulation.methods import fixed_method, model_numbers
 from mjbeer.simulation.recorder import Recorder
 from mjbeer.simulation.smooth_recorder import SmoothRecorder
 from mjbeer.simulation.stepped_model import SteppedModel
@@ -23,9 +23,9 @@ DRIFTS = ("energy_change", "swing_change", "swing_drift", "axis_drift")
 def test_the_compiled_record_is_the_same(scene: Scene, friction: float) -> None:
     """In pieces, to rounding. The other recorder looks for forces at more points in each step."""
     setting = Setting(integrator="GaussJackson", timestep=1e-3)
-    stepped = SteppedModel(mechanics(scene, setting))
+    stepped = SteppedModel(model_numbers(scene, setting))
     compiled = SmoothRecorder(stepped.model, scene, friction)
-    plain = Recorder(stepped.model, scene, friction, within=True)
+    plain = Recorder(stepped.model, scene, friction, look_within_steps=True)
     times = np.arange(0, 1.5, 1e-3)
     states = fixed_method(stepped, setting).run(stepped.initial_state(2.5, 3.0), times)
     for piece in np.array_split(np.arange(len(times)), 3):
@@ -54,7 +54,7 @@ def test_a_start_that_cannot_roll_is_its_end() -> None:
     """At the start the load turns so fast that the can is lifted: N < 0."""
     scene = frozen(can=METAL)
     setting = Setting(integrator="GaussJackson", timestep=1e-3)
-    stepped = SteppedModel(mechanics(scene, setting))
+    stepped = SteppedModel(model_numbers(scene, setting))
     recorder = SmoothRecorder(stepped.model, scene)
     start = stepped.initial_state(math.pi, 60.0)
     fixed_method(stepped, setting).run(start, np.array([0.0, 0.1]), recorder)

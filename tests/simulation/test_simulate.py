@@ -23,13 +23,13 @@ from mjbeer.exceptions import (
     UntrustedWarning,
 )
 from mjbeer.integrators.mujoco_steps import MuJoCoSteps
-from mjbeer.model.setting import INTEGRATORS, ROLLINGS, Integrator, Rolling
+from mjbeer.model.setting import MUJOCO_INTEGRATORS, ROLLINGS, Integrator, Rolling
 from mjbeer.theory.oscillator import reduced
 from mjbeer.theory.trajectory import largest_error
 from tests.support.scenes import METAL, SCENES, error
 
 ARRAYS = ("time", "u", "phi", "u_dot", "phi_dot", "roll", "roll_dot", "lift", "lift_dot", "energy")
-ALL = (*INTEGRATORS, "DOP853")
+ALL = (*MUJOCO_INTEGRATORS, "DOP853")
 
 
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)

@@ -10,7 +10,7 @@ from mjbeer import Scene, frozen, pendulum, sliding
 from mjbeer.exceptions import DivergenceError, ToleranceError
 from mjbeer.model.setting import Setting
 from mjbeer.simulation import stepped_model
-from mjbeer.simulation.methods import mechanics
+from mjbeer.simulation.methods import model_numbers
 from mjbeer.simulation.solve import solve
 from mjbeer.simulation.stepped_model import SteppedModel, kept_model
 from tests.support.scenes import METAL
@@ -39,11 +39,11 @@ TIMES = np.linspace(0, 0.4, 5)
 
 
 def kept(scene: Scene, setting: Setting) -> SteppedModel:
-    return kept_model(mechanics(scene, setting))
+    return kept_model(model_numbers(scene, setting))
 
 
 def new(scene: Scene, setting: Setting) -> SteppedModel:
-    return SteppedModel(mechanics(scene, setting))
+    return SteppedModel(model_numbers(scene, setting))
 
 
 def bits(stepped: SteppedModel, setting: Setting) -> bytes:

@@ -15,7 +15,7 @@ import numpy as np
 
 from mjbeer.drawing.camera import CAMERAS
 from mjbeer.exceptions import ParameterError
-from mjbeer.model.setting import INTEGRATORS, OWN, ROLLINGS, Setting
+from mjbeer.model.setting import MJBEER_INTEGRATORS, MUJOCO_INTEGRATORS, ROLLINGS, Setting
 from mjbeer.output.terminal import say
 from mjbeer.studies.benchmark.points import CASES
 from mjbeer.theory.can import LENGTH, RADIUS, Can
@@ -97,7 +97,12 @@ class Option(NamedTuple):
 
 _MODEL = (
     Option("--rolling", "reduced coordinates (default), joint equality (default to view), or contact", None, ROLLINGS),
-    Option("--integrator", "MuJoCo's or mjbeer's; by default RK4, or what keeps a tolerance", None, INTEGRATORS + OWN),
+    Option(
+        "--integrator",
+        "MuJoCo's or mjbeer's; by default RK4, or what keeps a tolerance",
+        None,
+        MUJOCO_INTEGRATORS + MJBEER_INTEGRATORS,
+    ),
     Option("--timestep", "timestep; with a tolerance, interval between samples [s]", Setting.timestep),
     Option("--friction", "coefficient of friction: a contact slips beyond it", Setting.friction),
 )

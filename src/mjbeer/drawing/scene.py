@@ -18,8 +18,9 @@ from mjbeer.drawing.camera import View, circle, in_space, on_incline, scale
 from mjbeer.drawing.sheet import Colour, Sheet
 from mjbeer.exceptions import RenderingError
 from mjbeer.model import looks
-from mjbeer.model.build import compile_spec, rolling_spec
+from mjbeer.model.build import rolling_spec
 from mjbeer.model.joints import joint_addresses
+from mjbeer.model.mjcf_file import compile_spec
 from mjbeer.model.setting import Setting
 from mjbeer.theory.can import RADIUS
 from mjbeer.theory.scene import Scene
@@ -29,8 +30,8 @@ _VISUAL, _UNSEEN = 2, 5  # groups of geoms: what templates show, and what is not
 _STRIPE = math.pi / 2 * RADIUS  # length of a stripe of the board [m]; a pale one begins at x = 0, as in templates
 _SQUARE, _LINE = 0.1, 0.1 / 64  # distance of the lines on the wall [m], two of them around x = 0, and their width
 _PAINT, _STROKE = np.array([0.15, 0.17, 0.2]), 0.003  # colour of lines across the board, and half their width [m]
-_PALE, _DARK = np.array([0.94, 0.84, 0.69]), np.array([0.84, 0.71, 0.54])  # stripes of the board, as in looks/world.xml
-_WALL, _GRID = np.array([0.985, 0.99, 1.0]), np.array([0.84, 0.87, 0.92])  # the wall and its lines, as there
+_PALE, _DARK = np.array([0.94, 0.84, 0.69]), np.array([0.84, 0.71, 0.54])  # stripes of the board, as in mjcf/assets.xml
+_WALL, _GRID = np.array([0.985, 0.99, 1.0]), np.array([0.84, 0.87, 0.92])  # the wall and its lines, as in scene.xml
 _NEAR = np.array([0.0, -1.0, 0.0])  # unit vector towards the reader
 
 

@@ -7,47 +7,69 @@ import sys
 import threading
 from collections.abc import Generator
 from contextlib import contextmanager
+from typing import NamedTuple
 
 import mujoco
 
 LARGEST = 1e10
 """Largest state that MuJoCo does not call diverged (mjMAXVAL)."""
 _lock = threading.Lock()
-_saved: list[tuple[bool, bool, int | None]] = []
-"""The log's settings and the clock when the first `quiet` was entered, once for each that is still open."""
+
+
+class _Output(NamedTuple):
+    """Where MuJoCo's log goes, and the address of the clock that it reads."""
+
+    console: bool
+    file: bool
+    clock: int | None
+
+
+_SILENT = _Output(console=False, file=False, clock=None)
+_saved: list[_Output] = []
+"""What there was when the first `quiet` was entered, once for each that is still open."""
 
 
 @contextmanager
 def quiet() -> Generator[None]:
-    """Stop MuJoCo from printing warnings, from writing MUJOCO_LOG.TXT, and from reading the clock for `mjData.timer`.
+    """Stop MuJoCo from printing warnings, from writing its log, and from reading the clock.
 
-    Errors are raised as usual. The clock takes longer than a step of a model with one or two joints. The settings
-    belong to the process: runs in several threads share them until the last one ends. To change them takes as long as
-    ten such steps: enter this once a run.
+    The log is MUJOCO_LOG.TXT, and the clock is for `mjData.timer`. Errors are raised as usual. To
+    read the clock takes longer than a step of a model with one or two joints. The settings belong
+    to the process: runs in several threads share them until the last one ends. To change them takes
+    as long as ten such steps: enter this once a run.
     """
     with _lock:
-        _saved.append(_saved[0] if _saved else _set(console=False, file=False, clock=None))
+        _saved.append(_saved[0] if _saved else _exchange(_SILENT))
     try:
         yield
     finally:
         with _lock:
             before = _saved.pop()
             if not _saved:
-                _set(*before)
+                _exchange(before)
 
 
-def _set(console: bool, file: bool, clock: int | None) -> tuple[bool, bool, int | None]:
+def _exchange(output: _Output) -> _Output:
     """Set where the log goes and the address of the clock, and return what they were."""
-    config, installed = mujoco.MjLogConfig.get(), ctypes.c_void_p.in_dll(library(), "mjcb_time")
-    before = config.logto_console, config.logto_file, installed.value
-    config.logto_console, config.logto_file, installed.value = console, file, clock
+    config = mujoco.MjLogConfig.get()
+    clock = _clock()
+    before = _Output(config.logto_console, config.logto_file, clock.value)
+    config.logto_console = output.console
+    config.logto_file = output.file
+    clock.value = output.clock
     mujoco.MjLogConfig.set(config)
     return before
 
 
 @functools.cache
+def _clock() -> ctypes.c_void_p:
+    """Return the variable of the library that has the address of the clock."""
+    return ctypes.c_void_p.in_dll(library(), "mjcb_time")
+
+
+@functools.cache
 def library() -> ctypes.CDLL:
-    """Return the handle of the loaded library; opening the same file again gives the same library."""
+    """Return the handle of the loaded library: to open its file again gives the same one."""
     folder = pathlib.Path(mujoco.__file__).parent
     pattern = {"darwin": "libmujoco*.dylib", "win32": "mujoco.dll"}.get(sys.platform, "libmujoco.so*")
     return ctypes.CDLL(str(next(folder.glob(pattern))))

@@ -12,19 +12,18 @@ from mjbeer.theory.scene import Scene
 
 Rolling = Literal["reduced", "equality", "contact"]
 MujocoIntegrator = Literal["Euler", "implicit", "implicitfast", "discrete", "RK4"]
-Integrator = Literal[MujocoIntegrator, "DOP853", "GaussJackson"]
+MjbeerIntegrator = Literal["DOP853", "GaussJackson"]
+Integrator = Literal[MujocoIntegrator, MjbeerIntegrator]
 ROLLINGS: tuple[Rolling, ...] = get_args(Rolling)
 """The ways in which a can is made to roll; see `Setting.rolling`."""
-INTEGRATORS: tuple[MujocoIntegrator, ...] = get_args(MujocoIntegrator)
+MUJOCO_INTEGRATORS: tuple[MujocoIntegrator, ...] = get_args(MujocoIntegrator)
 """The names of MuJoCo's own integrators, as in MJCF."""
-OWN = ("DOP853", "GaussJackson")
+MJBEER_INTEGRATORS: tuple[MjbeerIntegrator, ...] = get_args(MjbeerIntegrator)
 """The names of mjbeer's own integrators, which step by themselves and have samples at any time."""
 FRICTION = 1.0
 """Default friction coefficient of a contact, which is MuJoCo's default too."""
-
-_PACKAGE = pathlib.Path(__file__).parents[1]
-_SHIPPED = packed if (packed := _PACKAGE / "mjcf").is_dir() else _PACKAGE.parents[1] / "mjcf"
-"""The folder that comes with mjbeer: a wheel has it inside, a checkout at its top."""
+LEAST_FRICTION = 1e-5
+"""MuJoCo raises a smaller friction coefficient to this (mjMINMU), without a warning."""
 
 
 @dataclass(frozen=True)
@@ -32,13 +31,15 @@ class Setting:
     """How a scene is made to roll and how it is stepped; the fields are parameters of `simulate`.
 
     Raises:
-      ParameterError: if a name is unknown or a number is not allowed.
+      ParameterError: if a name is unknown, or a number is invalid.
     """
 
     rolling: Rolling = "reduced"
-    """"reduced" (no constraint), "equality" (a joint equality) or "contact" (a cylinder on a plane)."""
+    """"reduced" (no constraint), "equality" (a joint equality) or "contact" (a cylinder on a
+    plane)."""
     integrator: Integrator = "RK4"
-    """One of `INTEGRATORS` or `OWN`, "GaussJackson" only with "reduced"; with a tolerance it is not used."""
+    """One of MuJoCo's or mjbeer's; "GaussJackson" only with "reduced". With a tolerance it is not
+    used."""
     timestep: float = 1e-3
     """Timestep [s]; with a tolerance it is the sampling interval."""
     tolerance: float | None = None
@@ -46,18 +47,21 @@ class Setting:
     friction: float = FRICTION
     """Friction coefficient of a contact."""
     mjcf: str | os.PathLike[str] | None = None
-    """A folder of MJCF to be read instead of mjbeer's; None for that of the environment's MJBEER_MJCF, if any."""
+    """A folder of MJCF that is read instead of mjbeer's; None for that of the environment's
+    MJBEER_MJCF, if any."""
     folder: pathlib.Path = field(init=False, repr=False)
     """The folder of MJCF that is read."""
 
     def __post_init__(self) -> None:
         require.choice("rolling", self.rolling, ROLLINGS)
-        require.choice("integrator", self.integrator, (*INTEGRATORS, *OWN))
+        require.choice("integrator", self.integrator, (*MUJOCO_INTEGRATORS, *MJBEER_INTEGRATORS))
+        tolerance = self.tolerance
+        if tolerance is not None:
+            tolerance = require.positive("tolerance", tolerance, "rad")
         vars(self).update(
             timestep=require.within("timestep", self.timestep, *require.TIMESTEP, "s"),
-            # MuJoCo raises a smaller one to this (mjMINMU), and says nothing
-            friction=require.within("friction", self.friction, 1e-5, math.inf),
-            tolerance=None if self.tolerance is None else require.positive("tolerance", self.tolerance, "rad"),
+            friction=require.within("friction", self.friction, LEAST_FRICTION, math.inf),
+            tolerance=tolerance,
             folder=mjcf_folder(self.mjcf),
         )
         if self.integrator == "GaussJackson" and self.rolling != "reduced":
@@ -73,22 +77,35 @@ class Setting:
 
     @classmethod
     def of(cls, integrator: Integrator | None, tolerance: float | None, **fields: Any) -> "Setting":
-        """Return the setting of a call that gives an integrator or a tolerance, which chooses its own, or neither."""
-        setting = cls(integrator=cls.integrator if integrator is None else integrator, tolerance=tolerance, **fields)
+        """Return the setting of a call that gives an integrator, or a tolerance, or neither."""
+        stepped_by = cls.integrator if integrator is None else integrator
+        setting = cls(integrator=stepped_by, tolerance=tolerance, **fields)
         if tolerance is not None and integrator is not None:
             raise ParameterError(f"a tolerance chooses the integrator itself: give one of both, got {integrator!r} too")
         return setting
 
 
 def supported(scene: Scene, rolling: str) -> bool:
-    """Return whether MuJoCo can model a scene with this way of rolling: it cannot move a massless body."""
+    """Return whether MuJoCo can roll a scene in this way: it cannot move a massless body."""
     return rolling == "reduced" or scene.can.mass > 0 or scene.attachment == "frozen"
 
 
-def mjcf_folder(own: str | os.PathLike[str] | None = None) -> pathlib.Path:
-    """Return the folder of the MJCF: one's `own`, or that of the environment, or mjbeer's."""
-    if own is None and (own := os.environ.get("MJBEER_MJCF")) is None:
-        return _SHIPPED
-    if not isinstance(own, (str, os.PathLike)) or not os.path.isdir(own):
-        raise ParameterError(f"mjcf must be a folder of mechanics and looks, got {require.format_value(own)}")
-    return pathlib.Path(own).absolute()  # where it is now, whatever the working folder is when it is read
+def mjcf_folder(given: str | os.PathLike[str] | None = None) -> pathlib.Path:
+    """Return the folder of MJCF: the one that is `given`, or the environment's, or mjbeer's own."""
+    folder = os.environ.get("MJBEER_MJCF") if given is None else given
+    if folder is None:
+        return _MJBEER_FOLDER
+    if not isinstance(folder, (str, os.PathLike)) or not os.path.isdir(folder):
+        raise ParameterError(f"mjcf must be a folder of mechanics and looks, got {require.format_value(folder)}")
+    # It is read later, when the working folder may be another one.
+    return pathlib.Path(folder).absolute()
+
+
+def _find_mjbeer_folder() -> pathlib.Path:
+    """Return mjbeer's own folder of MJCF: a wheel has it inside, a checkout at its top."""
+    package = pathlib.Path(__file__).parents[1]
+    inside = package / "mjcf"
+    return inside if inside.is_dir() else package.parents[1] / "mjcf"
+
+
+_MJBEER_FOLDER = _find_mjbeer_folder()

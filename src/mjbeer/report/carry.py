@@ -55,7 +55,8 @@ def carry(can: Standing, distance: float = _DISTANCE, duration: float = 1.0, aft
         mujoco.mj_forward(model, data)
         mujoco.mj_rnePostConstraint(model, data)
         force[step] = data.cfrc_int[body, 3]  # the level force on its parent: the moment comes first
-        rise[step] = sum(data.sensor(f"slosh{mode}_rise").data[0] for mode in range(1, can.modes + 1))
+        for mode, elevation in enumerate(can.elevations(), start=1):
+            rise[step] -= elevation * data.sensor(f"slosh{mode}_up").data[0]
         model.opt.gravity[0] = -pushed[step]
         mujoco.mj_step(model, data)
     return Carried(time, place, acceleration, force, rise)

@@ -1,7 +1,6 @@
 """The methods by which a scene is integrated in a setting: one with a fixed timestep, or finer and finer ones.
 
-mjbeer's own integrators are imported only where they are used: numba, which compiles them, takes longer to import
-than everything else together.
+mjbeer's own integrators are imported only where they are used, as numba is slow to import.
 """
 
 import math
@@ -13,8 +12,8 @@ import numpy as np
 
 from mjbeer.integrators import Method
 from mjbeer.integrators.mujoco_steps import MuJoCoSteps
-from mjbeer.model.mechanics import Mechanics
-from mjbeer.model.setting import OWN, Setting
+from mjbeer.model.model_numbers import ModelNumbers
+from mjbeer.model.setting import MJBEER_INTEGRATORS, Setting
 from mjbeer.simulation.stepped_model import SteppedModel
 from mjbeer.theory.scene import Scene
 
@@ -24,9 +23,8 @@ if TYPE_CHECKING:
 _GOLDEN_SECTION = (math.sqrt(5) - 1) / 2
 """The greater part of a timestep in an uneven run. None of its multiples is near a whole number, so that no rate of
 rotation has the same phase at the ends of both parts."""
-_TOO_LIGHT = 40.0
-"""How uneven J is, divided by its least value, from which on Gauss-Jackson is not tried: the load passes its lowest
-point in a part of one step."""
+_TOO_NARROW = 40.0
+"""Narrowness of the minimum of J from which on Gauss-Jackson is not tried: the load passes it within one step."""
 _FINER = 1.4
 """Timestep of a run of Gauss-Jackson divided by that of the next, which has 1.4^13 = 79 times less error."""
 _FINER_RUNS = 5
@@ -44,8 +42,8 @@ _SHORTER = 1.25
 keep a local tolerance, and two runs with the same steps would have the same error."""
 
 
-def mechanics(scene: Scene, setting: Setting, uneven: bool = False) -> Mechanics:
-    """Return the numbers of the model that is stepped; an `uneven` run has its constraints fitted to shorter steps.
+def model_numbers(scene: Scene, setting: Setting, uneven: bool = False) -> ModelNumbers:
+    """Return the numbers of the model that is stepped; an `uneven` run has constraints tuned to shorter timesteps.
 
     A rigid equality that is integrated to a tolerance only has to correct the slip that rounding causes. It is tuned to
     sqrt(a/g)/2, a twelfth of the period of a pendulum of length a, which is too slow to limit the steps.
@@ -55,7 +53,7 @@ def mechanics(scene: Scene, setting: Setting, uneven: bool = False) -> Mechanics
         timestep = math.sqrt(scene.can.radius / scene.gravity) / 2
     elif uneven:
         timestep *= _GOLDEN_SECTION
-    return Mechanics(scene, setting, timestep=timestep)
+    return ModelNumbers(scene, setting, timestep=timestep)
 
 
 def fixed_method(stepped: SteppedModel, setting: Setting, uneven: bool = False) -> Method:
@@ -65,7 +63,7 @@ def fixed_method(stepped: SteppedModel, setting: Setting, uneven: bool = False) 
     steps: an even and an uneven run have no timestep with which both could be wrong alike.
     """
     timestep = setting.timestep
-    if setting.integrator not in OWN:
+    if setting.integrator not in MJBEER_INTEGRATORS:
         parts = (timestep,)
         if uneven:
             parts = (_GOLDEN_SECTION * timestep, (1 - _GOLDEN_SECTION) * timestep)
@@ -89,14 +87,22 @@ def swing_law(scene: Scene) -> "SwingLaw":
 
     swing = scene.oscillator
     arm = scene.load.moment / scene.effective_mass
-    return SwingLaw(swing.base, swing.chord, swing.coupling, swing.ramp, swing.depth, swing.bottom, arm)
+    return SwingLaw(
+        base=swing.base,
+        chord=swing.chord,
+        coupling=swing.coupling,
+        ramp=swing.ramp,
+        depth=swing.depth,
+        bottom=swing.bottom,
+        arm=arm,
+    )
 
 
 def suits_gauss_jackson(scene: Scene, model: mujoco.MjModel) -> bool:
-    """Return whether Gauss-Jackson can step a model: without constraints, without damping, and evenly enough."""
+    """Return whether Gauss-Jackson can step a model: without constraints and damping, and not of too light a wheel."""
     swing = scene.oscillator
-    unevenness = max(swing.coupling, swing.chord / 4) / swing.base  # half angles of a chord count half
-    return not (model.neq or scene.dissipates or unevenness > _TOO_LIGHT)
+    narrowness = max(swing.coupling, swing.chord / 4) / swing.base  # J = base (1 + narrowness phi^2) about phi = 0
+    return not (model.neq or scene.dissipates or narrowness > _TOO_NARROW)
 
 
 def finer_gauss_jackson(
@@ -117,7 +123,10 @@ def finer_gauss_jackson(
 
 
 def finer_dop853(stepped: SteppedModel, tolerance: float, scale: np.ndarray) -> Iterator[Method]:
-    """Yield runs of DOP853 with smaller and smaller local tolerances, down to rounding."""
+    """Yield runs of DOP853 with smaller and smaller local tolerances, down to rounding.
+
+    Each must be run before the next one is asked for: its longest step bounds that of the next.
+    """
     from mjbeer.integrators.dop853 import DOP853
 
     local = min(_FIRST_LOCAL * tolerance, _COARSEST_LOCAL)

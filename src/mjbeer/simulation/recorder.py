@@ -16,13 +16,15 @@ class Recorder:
     """Makes the record of a run of a scene's model: an `Observer`.
 
     It looks at the ends of all steps. Steps of mjbeer's own integrators are so long that forces have to be looked for
-    `within` them, too.
+    within them, too.
     """
 
-    def __init__(self, model: mujoco.MjModel, scene: Scene, friction: float = math.inf, within: bool = False) -> None:
+    def __init__(
+        self, model: mujoco.MjModel, scene: Scene, friction: float = math.inf, look_within_steps: bool = False
+    ) -> None:
         self._model = model
         self._scene = scene
-        self._within = within
+        self._looks_within_steps = look_within_steps
         self._maker = RecordMaker(scene, friction)
         self._last: _Ends | None = None
 
@@ -34,7 +36,7 @@ class Recorder:
     def __call__(self, times: np.ndarray, states: np.ndarray) -> None:
         """Add the next steps."""
         motion = to_coordinates(self._model, self._scene, states, times)
-        if not self._within:
+        if not self._looks_within_steps:
             self._maker.add(motion)
             return
         self._maker.add_states(motion)
@@ -52,8 +54,8 @@ class Recorder:
         """Add the forces at points within steps, and at all of their ends except the first."""
         step = np.diff(ends.time)[:, np.newaxis]
         time = ends.time[:-1, np.newaxis] + step * _SHARES
-        turned, phi_dot = _within(step, ends.phi, ends.phi_dot, ends.phi_ddot)
-        _, u_dot = _within(step, ends.u, ends.u_dot, ends.u_ddot)
+        turned, phi_dot = _interpolate(step, ends.phi, ends.phi_dot, ends.phi_ddot)
+        _, u_dot = _interpolate(step, ends.u, ends.u_dot, ends.u_ddot)
         phi = ends.phi[:-1, np.newaxis] + turned
         self._maker.add_forces(time.ravel(), phi.ravel(), phi_dot.ravel(), u_dot.ravel())
 
@@ -72,7 +74,15 @@ class _Ends(NamedTuple):
     @classmethod
     def of(cls, scene: Scene, motion: Coordinates) -> "_Ends":
         u_ddot, phi_ddot = accelerations(scene, motion.phi, motion.phi_dot, motion.u_dot)
-        return cls(motion.time, motion.phi, motion.phi_dot, phi_ddot, motion.u, motion.u_dot, u_ddot)
+        return cls(
+            time=motion.time,
+            phi=motion.phi,
+            phi_dot=motion.phi_dot,
+            phi_ddot=phi_ddot,
+            u=motion.u,
+            u_dot=motion.u_dot,
+            u_ddot=u_ddot,
+        )
 
 
 _POINTS = 32
@@ -96,7 +106,9 @@ _SLOPES = _POWERS * _SHARES[:, np.newaxis] ** (_POWERS - 1) @ _COEFFICIENTS
 """What gives the change since the beginning and the slope at the points within a step, from the five conditions."""
 
 
-def _within(step: np.ndarray, value: np.ndarray, slope: np.ndarray, bend: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _interpolate(
+    step: np.ndarray, value: np.ndarray, slope: np.ndarray, bend: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Return the change of a coordinate since the beginning of each step, and its slope, at the points within.
 
     Given are the lengths of the steps [s], shape (steps, 1), and at their ends the coordinate and its first and second

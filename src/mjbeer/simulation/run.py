@@ -13,8 +13,8 @@ from mjbeer.theory.record import ERROR, Diagnosis, Record, diagnose
 from mjbeer.theory.trajectory import Trajectory
 
 _MAX_TURN_PER_STEP = 2.0
-"""Largest angle that the load may turn in a timestep [rad], unless its motion hardly depends on the angle: J looks the
-same at every step of pi, but not to the stages of DOP853."""
+"""Largest angle that the load may turn in a timestep [rad]. DOP853 evaluates within the step, and may turn further. For
+other integrators it does not matter if the motion hardly depends on the angle."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
@@ -110,22 +110,22 @@ class Run(Trajectory):
 
 def diagnose_run(record: Record, setting: Setting, method: str, phi0: float, phi_dot0: float) -> Diagnosis:
     """Return what the record of a run from `phi0` [rad] with `phi_dot0` [rad/s] says against it."""
-    found = diagnose(record, setting.rolling, setting.friction)
+    diagnosis = diagnose(record, setting.rolling, setting.friction)
     timestep = setting.timestep if setting.tolerance is None else 0.0
     turn = record.largest_rate * timestep
     if turn <= _MAX_TURN_PER_STEP or method == "DOP853":
-        return found
+        return diagnosis
     rate = phi_dot0
     if record.scene.dissipates:
         # Damping slows the load, and the slower it is, the less even it turns: down to the rate that is no trouble.
         rate = min(abs(phi_dot0), _MAX_TURN_PER_STEP / timestep)
     if record.scene.oscillator.unevenness(phi0, rate) <= ERROR:
-        return found
+        return diagnosis
     reason = (
         f"the load turns by {turn:.3g} rad in a timestep (trusted up to {_MAX_TURN_PER_STEP:g}), in which its weight "
         "and inertia change unseen"
     )
-    return found._replace(solver=(*found.solver, reason))
+    return diagnosis._replace(solver=(*diagnosis.solver, reason))
 
 
 def turns_rounding(phi0: float) -> float:

@@ -4,9 +4,9 @@ import math
 
 from mjbeer.exceptions import DivergenceError
 from mjbeer.model.joints import joint_addresses, to_coordinates
-from mjbeer.simulation.methods import fixed_method, mechanics
-from mjbeer.simulation.run import Run
-from mjbeer.simulation.solve import solve
+from mjbeer.simulation.methods import fixed_method, model_numbers
+from mjbeer.simulation.run import Run, turns_rounding
+from mjbeer.simulation.solve import NUDGE, solve
 from mjbeer.simulation.stepped_model import SteppedModel
 from mjbeer.theory.oscillator import reduced
 from mjbeer.theory.record import Record
@@ -15,12 +15,9 @@ from mjbeer.theory.trajectory import largest_error
 _OVER_DISTANCE = 3.2
 """Error estimate divided by the distance to an uneven run. A contact is 0.62 times as soft in that run, so that its
 distance is 1/2.6 of the error; 3.2 allows for an order that has not settled."""
-_START_OFFSET = 4e-14
-"""Distance between the starts of a run and of the uneven one [rad]: a hundred times their rounding, which shows how
-much that matters beside a separatrix. A larger one could move the motion against an error, and hide it."""
 _DEPTH = 0.5
-"""Depth at which a can in contact starts in the uneven run, divided by that in the run. The error of softness falls to
-0.62 or to 0.38 of itself; that of the depth falls to half, between them, as the two may be of opposite sign."""
+"""Depth at which a can in contact starts in the uneven run, divided by that in the run. The errors by softness in the
+two parts of a step fall to 0.62 and 0.38 of themselves; half the depth lies between, so that they cannot cancel."""
 
 
 def compare_uneven(run: Run) -> float:
@@ -33,8 +30,8 @@ def compare_uneven(run: Run) -> float:
     motion = run.checkpoints
     phi0 = reduced(run.phi0)
     u0, _ = scene.initial_axis(phi0, run.phi_dot0)
-    stepped = SteppedModel(mechanics(scene, run.setting, uneven=True))
-    start = stepped.initial_state(phi0 + _START_OFFSET, run.phi_dot0)
+    stepped = SteppedModel(model_numbers(scene, run.setting, uneven=True))  # the kept one may have another scene
+    start = stepped.initial_state(phi0 + NUDGE, run.phi_dot0)
     if run.rolling == "contact":
         start[joint_addresses(stepped.model)["lift"]] *= _DEPTH
     try:
@@ -47,6 +44,7 @@ def compare_uneven(run: Run) -> float:
 
 def record_with_friction(run: Run, friction: float) -> Record:
     """Return the record of the same run, which says until when a can rolls with a coefficient of `friction`."""
-    stepped = SteppedModel(mechanics(run.scene, run.setting))
+    stepped = SteppedModel(model_numbers(run.scene, run.setting))
     start = stepped.initial_state(reduced(run.phi0), run.phi_dot0)
-    return solve(stepped, run.setting, start, run.checkpoints.time, friction).record
+    rounding = turns_rounding(run.phi0)
+    return solve(stepped, run.setting, start, run.checkpoints.time, friction=friction, rounding=rounding).record

@@ -11,8 +11,8 @@ from mjbeer import require
 from mjbeer.exceptions import LiquidWarning, ParameterError, UntrustedWarning
 from mjbeer.model.joints import to_coordinates
 from mjbeer.model.mujoco_library import quiet
-from mjbeer.model.setting import FRICTION, OWN, Integrator, Rolling, Setting
-from mjbeer.simulation.methods import mechanics
+from mjbeer.model.setting import FRICTION, MJBEER_INTEGRATORS, Integrator, Rolling, Setting
+from mjbeer.simulation.methods import model_numbers
 from mjbeer.simulation.run import Run, diagnose_run, turns_rounding
 from mjbeer.simulation.solve import solve
 from mjbeer.simulation.stepped_model import kept_model
@@ -26,7 +26,7 @@ _MOST_SAMPLES = 1e8
 """Largest number of samples at every timestep: they take ten gigabytes."""
 _MOST_STEPS = 1e12
 """Largest number of steps: at half a microsecond each they take a week."""
-_COMPARED = 4096
+_CHECKPOINTS = 4096
 """Number of timesteps, evenly spread over a run, at which a second run is compared with it besides the samples."""
 _PARTS = 32
 """Number of parts of a run to a tolerance, in each of which its runs are compared at least once."""
@@ -49,8 +49,8 @@ def simulate(
 
     Args:
       scene: what rolls.
-      duration: how long [s], 2 s if there are no `times` either; samples at every timestep end with the first one at
-        or after it.
+      duration: how long [s], 2 s if neither it nor `times` is given; samples at every timestep end with the first one
+        at or after it. With `times` it is only checked: none may be later.
       phi0: angle of the load to the incline at the start [rad].
       phi_dot0: its rate at the start [rad/s].
       rolling: how the can is made to roll, as in `build`: "reduced", "equality" or "contact".
@@ -115,7 +115,7 @@ def _sample_times(duration: float | None, setting: Setting, times: np.ndarray) -
     ratios = times / timestep
     if ratios[-1] > _MOST_STEPS:
         raise ParameterError(f"times must be within {_MOST_STEPS:g} timesteps of {timestep!r} s, got {times[-1]} s")
-    if setting.integrator in OWN:
+    if setting.integrator in MJBEER_INTEGRATORS:
         return times
     steps = np.rint(ratios)
     off = (np.abs(ratios - steps) > _ON_A_STEP * ratios) | (np.diff(steps, prepend=-1.0) == 0)
@@ -128,16 +128,16 @@ def _sample_times(duration: float | None, setting: Setting, times: np.ndarray) -
 
 
 def integrate(scene: Scene, phi0: float, phi_dot0: float, setting: Setting, times: np.ndarray) -> Run:
-    """Return the motion of a scene in a setting at increasing `times` [s], with the same errors as `simulate`.
+    """Return the motion of a scene in a setting at increasing `times` [s]; it raises what `simulate` raises.
 
-    The model starts less whole turns away from phi = 0, where angles keep their digits; the samples have them again.
+    The model starts without the whole turns of `phi0`, as angles near 0 have more digits; the samples get them back.
     """
     near_phi0 = reduced(phi0)
     checked = _check_times(setting, times)
     with quiet():  # once: the steps and models inside then find it so
-        stepped = kept_model(mechanics(scene, setting))
+        stepped = kept_model(model_numbers(scene, setting))
         start = stepped.initial_state(near_phi0, phi_dot0)
-        solution = solve(stepped, setting, start, checked, math.inf, turns_rounding(phi0))
+        solution = solve(stepped, setting, start, checked, rounding=turns_rounding(phi0))
     motion = to_coordinates(stepped.model, scene, solution.states, checked)
     stepped.check(motion)
     samples = np.searchsorted(checked, times)
@@ -165,12 +165,12 @@ def integrate(scene: Scene, phi0: float, phi_dot0: float, setting: Setting, time
 def _check_times(setting: Setting, times: np.ndarray) -> np.ndarray:
     """Return increasing times [s] at which a run is compared with another one: its samples, and more in between.
 
-    With a fixed timestep they are up to `_COMPARED` steps; with a tolerance, `_PARTS` times if samples are few.
+    With a fixed timestep they are up to `_CHECKPOINTS` steps; with a tolerance, `_PARTS` times if samples are few.
     """
     last = times[-1]
     if setting.tolerance is None:
         steps = max(1, int(last / setting.timestep))
-        more = setting.timestep * np.linspace(0, steps, min(steps, _COMPARED) + 1).astype(np.int64)
+        more = setting.timestep * np.linspace(0, steps, min(steps, _CHECKPOINTS) + 1).astype(np.int64)
     elif (times[1:] - times[:-1]).max(initial=times[0]) > last / _PARTS:
         more = last * np.linspace(0, 1, _PARTS + 1)
     else:

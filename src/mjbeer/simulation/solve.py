@@ -8,7 +8,7 @@ import numpy as np
 from mjbeer.exceptions import ToleranceError
 from mjbeer.model.joints import angle_sums, state_sizes
 from mjbeer.model.mujoco_library import LARGEST
-from mjbeer.model.setting import OWN, Setting
+from mjbeer.model.setting import MJBEER_INTEGRATORS, Setting
 from mjbeer.simulation.methods import finer_dop853, finer_gauss_jackson, fixed_method, suits_gauss_jackson
 from mjbeer.simulation.recorder import Recorder
 from mjbeer.simulation.stepped_model import SteppedModel
@@ -31,6 +31,7 @@ def solve(
     setting: Setting,
     start: np.ndarray,
     times: np.ndarray,
+    *,
     friction: float = math.inf,
     rounding: float = 0.0,
 ) -> Solution:
@@ -43,7 +44,7 @@ def solve(
       ToleranceError: if the tolerance is not reached; the message says how near the runs came.
     """
     if setting.tolerance is None:
-        recorder = Recorder(stepped.model, stepped.scene, friction, within=setting.integrator in OWN)
+        recorder = Recorder(stepped.model, stepped.scene, friction, setting.integrator in MJBEER_INTEGRATORS)
         states = fixed_method(stepped, setting).run(start, times, recorder)
         return Solution(states, recorder.record, None, setting.integrator)
     if setting.tolerance < SMALLEST:
@@ -63,7 +64,7 @@ def _solve_to_tolerance(
 
     Gauss-Jackson is tried first, if the motion is one for it, and then DOP853.
     """
-    from mjbeer.simulation.smooth_recorder import SmoothRecorder  # compiled, as the integrators are
+    from mjbeer.simulation.smooth_recorder import SmoothRecorder  # numba is slow to import
 
     model = stepped.model
     scene = stepped.scene
@@ -79,14 +80,14 @@ def _solve_to_tolerance(
             return solve_to_tolerance(methods, problem, lambda: SmoothRecorder(model, scene, friction))
     dynamics.most_evaluations = dynamics.evaluations + EVALUATIONS
     methods = finer_dop853(stepped, tolerance, scale)
-    return solve_to_tolerance(methods, problem, lambda: Recorder(model, scene, friction, within=True))
+    return solve_to_tolerance(methods, problem, lambda: Recorder(model, scene, friction, look_within_steps=True))
 
 
 def _along_energy(rates: np.ndarray) -> np.ndarray:
-    """Return the signs with which changes of a state all add to its energy, or all take from it.
+    """Return a sign for each component of a state, such that steps with these signs all raise the energy.
 
-    `rates` are the time derivatives of the state: velocities, then accelerations. Work is done against the
-    acceleration, and a velocity is made larger.
+    `rates` are the time derivatives of the state: velocities, then accelerations. A move against an acceleration
+    raises V, and a larger velocity the kinetic energy.
     """
     velocities, accelerations = np.split(rates, 2)
     return np.copysign(1.0, np.concatenate([-accelerations, velocities]))
@@ -98,7 +99,7 @@ def _refuse_stiff(scene: Scene, duration: float, tolerance: float) -> None:
         return
     # The weight of can and load, pulling at the rim, drives them apart at most at this rate.
     slip = min(scene.damping_law.rate_at(scene.mass * scene.gravity * scene.can.radius), LARGEST)
-    rate = float(relaxation_rate(scene, np.linspace(0, math.pi, 91), slip).max())
+    rate = float(relaxation_rate(scene, np.linspace(0, math.pi, 91), slip).max())  # every two degrees
     if rate * duration > _STABLE * EVALUATIONS:
         raise not_reached(
             tolerance,

@@ -9,9 +9,9 @@ import numpy as np
 
 from mjbeer.model.build import compiled_model, write_numbers
 from mjbeer.model.check import check_run, is_edited
+from mjbeer.model.compiled_numbers import compiled_views
 from mjbeer.model.joints import initial_state
-from mjbeer.model.mechanics import Mechanics, Structure
-from mjbeer.model.mjcf_file import compiled_views
+from mjbeer.model.model_numbers import ModelNumbers, Structure
 from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.scene import Scene
 
@@ -26,13 +26,13 @@ class SteppedModel:
       UnsupportedError: if MuJoCo cannot have such a model.
     """
 
-    def __init__(self, mechanics: Mechanics) -> None:
-        self.model = compiled_model(mechanics)
+    def __init__(self, numbers: ModelNumbers) -> None:
+        self.model = compiled_model(numbers)
         self.data = mujoco.MjData(self.model)
-        self._views = compiled_views(self.model, mechanics.parameters)
-        self._written: Mechanics | None = None
-        self._edited = is_edited(mechanics)
-        self.write(mechanics)
+        self._views = compiled_views(self.model, numbers.parameters)
+        self._written: ModelNumbers | None = None
+        self._edited = is_edited(numbers)
+        self.write(numbers)
 
     @property
     def scene(self) -> Scene:
@@ -40,22 +40,21 @@ class SteppedModel:
         assert self._written is not None
         return self._written.scene
 
-    def write(self, mechanics: Mechanics) -> None:
+    def write(self, numbers: ModelNumbers) -> None:
         """Write the numbers of a scene into the model, if they are new, and reset the data."""
-        if mechanics == self._written:
+        if numbers == self._written:
             mujoco.mj_resetData(self.model, self.data)
         else:
             self._written = None  # until all of it is written
-            write_numbers(self.model, self.data, mechanics, self._views)
-            self._written = mechanics
+            write_numbers(self.model, self.data, numbers, self._views)
+            self._written = numbers
         if "dynamics" in vars(self):
             self.dynamics.model_has_changed()
 
     @cached_property
     def dynamics(self) -> "Dynamics":
         """Return the model's accelerations for mjbeer's own integrators."""
-        # Imported only here: numba, which compiles them, takes longer to import than everything else together.
-        from mjbeer.integrators.dynamics import Dynamics
+        from mjbeer.integrators.dynamics import Dynamics  # numba is slow to import
 
         return Dynamics(self.model, self.data)
 
@@ -83,11 +82,11 @@ class _Kept(threading.local):
 _kept = _Kept()
 
 
-def kept_model(mechanics: Mechanics) -> SteppedModel:
-    """Return this thread's model of such a structure, in which its last scene leaves no trace."""
-    kept = _kept.models.get(mechanics.structure)
+def kept_model(numbers: ModelNumbers) -> SteppedModel:
+    """Return this thread's model of that structure, with this scene's numbers written in and its data reset."""
+    kept = _kept.models.get(numbers.structure)
     if kept is None:
-        kept = _kept.models[mechanics.structure] = SteppedModel(mechanics)
+        kept = _kept.models[numbers.structure] = SteppedModel(numbers)
     else:
-        kept.write(mechanics)
+        kept.write(numbers)
     return kept

@@ -24,9 +24,9 @@ SAFETY = 10.0
 ROUNDING = 0.3
 """Estimated effect of all rounding divided by that of the nudge."""
 DRIFT = 1.5
-"""Largest error of phi divided by that which the drift of the swing's energy implies: 0.5 for rotations and small
-swings, up to 2 for swings of 2.85 rad, where the distance of the runs shows how much the motion amplifies."""
-COMPARED = 256
+"""Error of phi divided by that which the drift of the swing's energy implies: 0.5 for rotations and small swings. For
+swings of 2.85 rad it is up to 2; there the distance of the runs is the larger estimate."""
+MOST_COMPARED = 256
 """Samples at which two runs are compared, if there are more: an error changes within a part of a swing."""
 
 
@@ -61,7 +61,7 @@ class Problem(NamedTuple):
     start: np.ndarray
     """State at time 0, shape (nq + nv,)."""
     nudged_start: np.ndarray
-    """A start that is a little aside."""
+    """The same start, moved by a multiple of rounding."""
     times: np.ndarray
     """Times of the samples [s]."""
     tolerance: float
@@ -79,10 +79,11 @@ def solve_to_tolerance(
       ToleranceError: if none does, or if rounding alone may be more than the tolerance.
     """
     tolerance = problem.tolerance
-    stride = math.ceil(len(problem.times) / COMPARED)
+    stride = math.ceil(len(problem.times) / MOST_COMPARED)
     compared = slice((len(problem.times) - 1) % stride, None, stride)  # with the last one
     some_times = np.ascontiguousarray(problem.times[compared])
     apart = math.inf
+    error = math.inf
     try:
         finer_methods = iter(methods)
         coarse_method = next(finer_methods)
@@ -105,8 +106,8 @@ def solve_to_tolerance(
         raise not_reached(tolerance, str(failure)) from failure
     raise not_reached(
         tolerance,
-        f"the two finest runs differ by {apart:.2g} rad, where a tenth of the tolerance is allowed: the motion is not "
-        "smooth, or rounding decides",
+        f"the error of the finest run is estimated at {error:.2g} rad, and it is {apart:.2g} rad apart from the run "
+        "before: the motion is not smooth, or rounding decides",
     )
 
 

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 
 from mjbeer import require
 from mjbeer.exceptions import LiquidWarning, ParameterError
-from mjbeer.model.setting import FRICTION, OWN, Integrator, Rolling, Setting
+from mjbeer.model.setting import FRICTION, MJBEER_INTEGRATORS, Integrator, Rolling, Setting
 from mjbeer.output import files
 from mjbeer.output.terminal import STDERR, progress_bar
 from mjbeer.simulation.run import Run
@@ -163,7 +163,7 @@ def _times(duration: float, setting: Setting, every_step: bool) -> np.ndarray:
     MuJoCo's integrators end at a timestep, the first one at or after the duration.
     """
     whole = setting.timestep * math.ceil(duration / setting.timestep * (1 - 1e-10))  # which allows for rounding
-    end = duration if setting.tolerance is not None or setting.integrator in OWN else whole
+    end = duration if setting.tolerance is not None or setting.integrator in MJBEER_INTEGRATORS else whole
     if not every_step:
         return np.array([end])
     times = setting.timestep * np.arange(1 + math.floor(end / setting.timestep * (1 + 1e-12)))

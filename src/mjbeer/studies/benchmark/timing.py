@@ -16,9 +16,9 @@ from mjbeer.exceptions import DivergenceError, MjbeerError
 from mjbeer.integrators.mujoco_steps import MuJoCoSteps
 from mjbeer.model.build import specify
 from mjbeer.model.joints import initial_state, to_coordinates
-from mjbeer.model.setting import INTEGRATORS, OWN, ROLLINGS, Setting, supported
+from mjbeer.model.setting import MJBEER_INTEGRATORS, MUJOCO_INTEGRATORS, ROLLINGS, Setting, supported
 from mjbeer.output.terminal import progress_bar
-from mjbeer.simulation.methods import fixed_method, mechanics
+from mjbeer.simulation.methods import fixed_method, model_numbers
 from mjbeer.simulation.solve import solve
 from mjbeer.simulation.stepped_model import SteppedModel
 from mjbeer.studies.benchmark import other_tools, points
@@ -92,7 +92,7 @@ def ladders(scene: Scene, quick: bool = False, missing: Container[str] = ()) -> 
     large = tuple(128e-3 / 2 ** (k / 2) for k in range(0, 15, every))
     found: dict[Curve, tuple[float, ...]] = {}
     for rolling in (rolling for rolling in ROLLINGS if supported(scene, rolling)):
-        found |= {Curve(rolling, integrator): steps for integrator in INTEGRATORS}
+        found |= {Curve(rolling, integrator): steps for integrator in MUJOCO_INTEGRATORS}
         found[Curve(rolling, "DOP853")] = large
         if rolling != "contact":  # which is too soft for a tolerance
             found[Curve(rolling, points.CHOSEN, points.TOLERANCE)] = tolerances
@@ -153,7 +153,7 @@ def _set_up_setting(case: Case, point: Point) -> tuple[Callable[[], Any], Callab
     if point.parameter == points.TIMESTEP:
         given = {"integrator": point.method, "timestep": point.value}
     setting = replace(Setting(), rolling=point.model, **given)
-    stepped = SteppedModel(mechanics(case.scene, setting))
+    stepped = SteppedModel(model_numbers(case.scene, setting))
     start = stepped.initial_state(case.phi0, 0.0)
     if setting.tolerance is None:
         run = partial(fixed_method(stepped, setting).run, start, points.TIMES)
@@ -162,8 +162,8 @@ def _set_up_setting(case: Case, point: Point) -> tuple[Callable[[], Any], Callab
 
     def samples(states: np.ndarray) -> Samples:
         motion = to_coordinates(stepped.model, case.scene, states, points.TIMES)
-        count = _evaluations_of_steps(point) if point.method in INTEGRATORS else None
-        if point.method in OWN:
+        count = _evaluations_of_steps(point) if point.method in MUJOCO_INTEGRATORS else None
+        if point.method in MJBEER_INTEGRATORS:
             count = stepped.dynamics.evaluations
         return motion.phi, motion.u, count
 

@@ -19,7 +19,7 @@ from mjbeer.exceptions import (
     UnsupportedError,
     UntrustedWarning,
 )
-from mjbeer.model.free import attach
+from mjbeer.model.attach import attach
 from mjbeer.model.mujoco_library import quiet
 from mjbeer.model.setting import FRICTION, Integrator, Rolling
 from mjbeer.simulation.simulate import simulate

@@ -14,7 +14,7 @@ import numpy as np
 
 from mjbeer import require
 from mjbeer.exceptions import NoEquilibriumError
-from mjbeer.model.setting import INTEGRATORS, ROLLINGS, supported
+from mjbeer.model.setting import MUJOCO_INTEGRATORS, ROLLINGS, supported
 from mjbeer.studies.stability.judge import Trial
 from mjbeer.theory.can import Can, Damping, Load
 from mjbeer.theory.liquid import NAMES, liquid
@@ -261,7 +261,7 @@ def _setting(pick: Pick, scene: Scene, kind: str) -> dict[str, Any]:
     setting: dict[str, Any] = {"rolling": rolling, "friction": pick(friction)}
     if rolling != "contact" and pick.one(True, False, False, False):
         return setting | {"tolerance": pick((1e-12, 0.03))}
-    return setting | {"integrator": pick.one(*INTEGRATORS, "RK4", "DOP853", "DOP853")}
+    return setting | {"integrator": pick.one(*MUJOCO_INTEGRATORS, "RK4", "DOP853", "DOP853")}
 
 
 def _samples(pick: Pick, steps: int, anywhere: bool, kind: str) -> dict[str, Any]:

@@ -26,7 +26,7 @@ from mjbeer.integrators.dynamics import Dynamics
 from mjbeer.integrators.mujoco_steps import MuJoCoSteps
 from mjbeer.model.build import build, specify
 from mjbeer.model.joints import joint_addresses
-from mjbeer.model.setting import INTEGRATORS, Integrator
+from mjbeer.model.setting import MUJOCO_INTEGRATORS, Integrator
 from mjbeer.output.plots import COLOURS, chart, name_below
 from mjbeer.output.terminal import Table
 from mjbeer.paper.checks import Check, Result
@@ -57,7 +57,7 @@ _SEED = 1e-7
 time constant, and 1e-4 would already disturb the swing by 1 % at tau = 1 ms."""
 _STEPS = 1000
 """Least number of steps of a swing: within it, a growth of 2 % a step makes any initial violation visible."""
-_ALL: tuple[Integrator, ...] = (*INTEGRATORS, "DOP853")
+_ALL: tuple[Integrator, ...] = (*MUJOCO_INTEGRATORS, "DOP853")
 PLANS: tuple[tuple[str, Integrator], ...] = (
     *(("solref", name) for name in _ALL),
     *(("direct", name) for name in _ALL if name not in ("implicit", "DOP853")),

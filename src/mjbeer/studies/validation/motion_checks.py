@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from mjbeer.model.setting import INTEGRATORS, Integrator, Rolling, supported
+from mjbeer.model.setting import MUJOCO_INTEGRATORS, Integrator, Rolling, supported
 from mjbeer.paper.checks import Check
 from mjbeer.paper.frozen import equilibrium_53
 from mjbeer.simulation.simulate import simulate
@@ -22,7 +22,7 @@ _METAL = Can.sheet_metal()
 """The 12-oz aluminium can of the paper's section 3."""
 ORDERS: dict[Integrator, tuple[int, float]] = {"RK4": (4, 0.2), "DOP853": (8, 0.5)}
 """Order of each integrator, and the largest difference of the observed order from it."""
-ORDERS |= {name: (1, 0.1) for name in INTEGRATORS if name != "RK4"}
+ORDERS |= {name: (1, 0.1) for name in MUJOCO_INTEGRATORS if name != "RK4"}
 
 
 def checks() -> Iterator[Check]:
