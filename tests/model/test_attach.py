@@ -121,7 +121,7 @@ def test_what_the_parent_s_compiler_spoils_is_said(name: str, value: float, reas
         model = mujoco.MjModel.from_xml_string(spec.to_xml())
     of_the_can = build(standing())
     assert not all(
-        np.allclose(getattr(model, each), getattr(of_the_can, each)) for each in ("body_mass", "body_inertia")
+        np.allclose(getattr(model, array), getattr(of_the_can, array)) for array in ("body_mass", "body_inertia")
     )
 
 
@@ -158,7 +158,9 @@ def test_the_timestep_that_rk4_is_given_is_the_limit() -> None:
 @pytest.mark.parametrize("modes", [0, 1])
 def test_a_can_slides_as_coulomb_says(modes: int) -> None:
     """For two seconds, once it has begun; with MuJoCo's friction of 1 it stays, as the larger coefficient counts."""
-    angle, friction, velocities = math.radians(17), 0.2, []
+    angle = math.radians(17)
+    friction = 0.2
+    velocities = []
     down = np.array([math.cos(angle), 0, -math.sin(angle)])
     turn = [math.cos(angle / 2), 0.0, math.sin(angle / 2), 0.0]
     for own in (friction, None):
@@ -186,7 +188,8 @@ def test_a_contact_takes_friction_as_between_any_geoms_and_a_lying_can_s_softnes
     ):
         for friction, expected in ((0.3, [0.3, 0.3, 0.02, 1e-4, 1e-4]), ([0.01, 0.03], [0.05, 0.05, 0.03, 1e-4, 1e-4])):
             spec = world()
-            spec.geom("floor").friction, spec.geom("floor").condim = [0.05, 0.02, 1e-4], 4
+            spec.geom("floor").friction = [0.05, 0.02, 1e-4]
+            spec.geom("floor").condim = 4
             attach(spec, can, place, friction=friction)
             contact = settled(spec, 0.1).contact
             assert len(contact) > 0
@@ -198,7 +201,8 @@ def test_a_contact_takes_friction_as_between_any_geoms_and_a_lying_can_s_softnes
 
 # Another fill
 
-OLD, NEW = standing(modes=3), standing("water", 0.8, modes=3, damping_ratio=0.05)
+OLD = standing(modes=3)
+NEW = standing("water", 0.8, modes=3, damping_ratio=0.05)
 
 
 def shared(can: Standing | Scene) -> mujoco.MjModel:
@@ -223,19 +227,23 @@ def shared(can: Standing | Scene) -> mujoco.MjModel:
 )
 def test_a_can_is_filled_anew_as_if_it_were_compiled(old: Standing | Scene, new: Standing | Scene) -> None:
     """Masses, and accelerations at a random state; of a standing can all arrays that there are."""
-    filled, compiled = shared(old), shared(new)
+    filled = shared(old)
+    compiled = shared(new)
     refill(filled, new, prefix="own-")
     names = ("body_mass", "body_inertia", "body_ipos", "body_subtreemass", "dof_damping", "dof_invweight0", "dof_M0")
     if isinstance(new, Standing):
         names = tuple(name for name in dir(compiled) if isinstance(getattr(compiled, name), np.ndarray))
     for name in names:
         assert np.array_equal(getattr(filled, name), getattr(compiled, name)), name
-    random, found = np.random.default_rng(1), []
-    qpos, qvel = compiled.qpos0.copy(), random.normal(size=compiled.nv)
+    random = np.random.default_rng(1)
+    found = []
+    qpos = compiled.qpos0.copy()
+    qvel = random.normal(size=compiled.nv)
     mujoco.mj_integratePos(compiled, qpos, random.normal(size=compiled.nv), 1.0)
     for model in (filled, compiled):
         data = mujoco.MjData(model)
-        data.qpos, data.qvel = qpos, qvel
+        data.qpos = qpos
+        data.qvel = qvel
         mujoco.mj_forward(model, data)
         found.append(data.qacc.copy())
     # The same sums of the same numbers.
@@ -282,7 +290,8 @@ def test_what_cannot_be_attached_is_refused(
 @pytest.mark.parametrize("free", [True, False])
 def test_what_mujoco_cannot_move_is_refused_as_by_build(free: bool) -> None:
     """A pendulum of a small can, whose inertia is below MuJoCo's least; the parent stays as it was."""
-    can, spec = standing(can=Can.sheet_metal(0.004, 0.01), modes=5), world()
+    can = standing(can=Can.sheet_metal(0.004, 0.01), modes=5)
+    spec = world()
     with pytest.raises(UnsupportedError, match=r"^MuJoCo cannot represent this scene: .*than mjMINVAL") as built:
         build(can, free=free)
     before = spec.to_xml()

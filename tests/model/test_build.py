@@ -25,10 +25,10 @@ from tests.support.scenes import METAL, SCENES, scenes
 # Sums of a few products each, some of which cancel in part on a random scene; compared with their largest term.
 ROUNDING = 1e-11
 EXTREMES = [
-    *(each(fill=fill) for each in (sliding, frozen) for fill in (1e-2, 1 - 1e-6, 1.0)),
+    *(make(fill=fill) for make in (sliding, frozen) for fill in (1e-2, 1 - 1e-6, 1.0)),
     *(pendulum(wheel_mass=mass) for mass in (1e-4, 1e2)),
     *(hoop(hoop_mass=mass) for mass in (2e-4, 2e2)),
-    *(each(can=Can.massless(size, size)) for each in (sliding, frozen) for size in (1e-3, 1.0)),
+    *(make(can=Can.massless(size, size)) for make in (sliding, frozen) for size in (1e-3, 1.0)),
     Scene(Can(0.03, 0.1, 0.1, 9e-5), Load(0.2, 0.0, 1e-4), 0.2, "sliding"),
     Scene(Can(0.03, 0.1, 1e2, 0.09), Load(0.2, 0.01, 1e-4), 0.2, "sliding"),
 ]
@@ -49,7 +49,8 @@ def any_scene(draw: st.DrawFn) -> Scene:
 
 def forward(model: mujoco.MjModel, scene: Scene, phi: float, phi_dot: float, u_dot: float) -> tuple[float, float]:
     """u_ddot and phi_ddot of MuJoCo's forward dynamics in a state of rolling."""
-    roll_dot, data = u_dot / scene.can.radius, mujoco.MjData(model)
+    roll_dot = u_dot / scene.can.radius
+    data = mujoco.MjData(model)
     values = {"slide": (0.0, u_dot), "lift": (-1e-9 * scene.can.radius, 0.0), "roll": (0.0, roll_dot)}
     values |= {"swing": (phi, phi_dot - roll_dot), "phi": (phi, phi_dot)}
     if scene.attachment == "frozen":
@@ -62,21 +63,26 @@ def forward(model: mujoco.MjModel, scene: Scene, phi: float, phi_dot: float, u_d
 
 
 def assert_theory(model: mujoco.MjModel, scene: Scene, phi: float, phi_dot: float, u_dot: float) -> None:
-    found, expected = forward(model, scene, phi, phi_dot, u_dot), accelerations(scene, phi, phi_dot, u_dot)
-    radius, base = scene.can.radius, scene.oscillator.base
+    found = forward(model, scene, phi, phi_dot, u_dot)
+    expected = accelerations(scene, phi, phi_dot, u_dot)
+    radius = scene.can.radius
+    base = scene.oscillator.base
     # A torque alone accelerates the load, and where a constraint rolls the can, first of all the can.
     least = base if "roll" not in joint_addresses(model) else min(base, scene.can.inertia or base)
     torque = abs(float(scene.damping_law.torque(u_dot / radius - phi_dot))) + scene.drag * u_dot**2 * radius
     scale = torque / least + phi_dot**2 + scene.gravity / radius + abs(expected[1]) + abs(expected[0]) / radius
-    assert abs(found[1] - expected[1]) <= ROUNDING * scale
-    assert abs(found[0] - expected[0]) <= ROUNDING * scale * radius
+    # A constraint in angles, of a time constant of half a timestep, pulls back the rounding of roll - u/a.
+    pulled = (2 / model.opt.timestep) ** 2 * np.spacing(1 + abs(phi)) if model.neq else 0.0
+    assert abs(found[1] - expected[1]) <= ROUNDING * scale + pulled
+    assert abs(found[0] - expected[0]) <= (ROUNDING * scale + pulled) * radius
 
 
 def written(scene: Scene, setting: Setting) -> mujoco.MjModel:
     """A skeleton that had the numbers of other scenes before."""
     made = ModelNumbers(scene, setting)
     model = compiled_model(made)
-    data, views = mujoco.MjData(model), compiled_views(model, made.parameters)
+    data = mujoco.MjData(model)
+    views = compiled_views(model, made.parameters)
     braked = replace(scene, drag=scene.drag + 1.0, gravity=5.0) if scene.dissipates else replace(scene, incline=0.1)
     for other in (scene, braked, scene):
         if (before := ModelNumbers(other, setting)).structure == made.structure:
@@ -104,7 +110,8 @@ def test_extreme_skeletons_accelerate_as_theory_says(scene: Scene) -> None:
 
 def test_a_wrong_model_is_found_out() -> None:
     """Another chord; and the equality as MuJoCo compiles it, whose impedance of 0.9999 lacks 1e-4 of the force."""
-    chord, soft = build(frozen()), rolling_spec(frozen(), Setting("equality")).compile()
+    chord = build(frozen())
+    soft = rolling_spec(frozen(), Setting("equality")).compile()
     chord.tendon_armature[:] *= 1 + 1e-9
     for wrong in (chord, soft):
         with pytest.raises(AssertionError):
@@ -138,7 +145,10 @@ def test_models_with_other_elements_have_another_structure_and_no_others(monkeyp
         structures = [ModelNumbers(scene, Setting(rolling)).structure for scene in scenes]
         assert structures[0] not in structures[1:]
         assert (structures[1] == structures[2]) == (rolling != "reduced")
-    assert len({ModelNumbers(frozen(), Setting("equality", each)).structure for each in MUJOCO_INTEGRATORS}) == 1
+    assert (
+        len({ModelNumbers(frozen(), Setting("equality", integrator)).structure for integrator in MUJOCO_INTEGRATORS})
+        == 1
+    )
     simulate(sliding(), 0.01, 1.0)
     monkeypatch.setattr("mjbeer.model.build.rolling_spec", None)
     simulate(sliding(fill=0.3), 0.01, 1.0)
@@ -162,7 +172,8 @@ def test_what_mujoco_has_not_is_refused(rolling: Rolling, scene: Scene, reason: 
 @pytest.mark.parametrize("rolling", ["reduced", "equality"])  # a contact is soft
 def test_no_force_is_too_small_to_move_a_damped_load(rolling: Rolling, integrator: MujocoIntegrator) -> None:
     """Let go beside the top, on level ground. After a step the rate is that of the acceleration, less its damping."""
-    scene, timestep = sliding(0.0, can=METAL, damping=1e-4), 1e-4
+    scene = sliding(0.0, can=METAL, damping=1e-4)
+    timestep = 1e-4
     for aside, visuals in ((1e-4, False), (1e-9, True), (1e-13, False), (1e-13, True)):
         model = build(scene, rolling, visuals, integrator, timestep)
         data = mujoco.MjData(model)
@@ -177,9 +188,11 @@ def test_no_force_is_too_small_to_move_a_damped_load(rolling: Rolling, integrato
 @pytest.mark.parametrize("rolling", ROLLINGS)
 def test_a_model_starts_where_it_is_asked_to_and_rolls(rolling: Rolling, visuals: bool) -> None:
     """By its keyframe, and anew by `reset` after it was moved; a loop of a stranger's own is then right."""
-    scene, timestep = sliding(0.2, can=METAL), 1e-4
+    scene = sliding(0.2, can=METAL)
+    timestep = 1e-4
     model = build(scene, rolling, visuals, timestep=timestep, phi0=0.7, phi_dot0=2.0)
-    data, again = mujoco.MjData(model), mujoco.MjData(model)
+    data = mujoco.MjData(model)
+    again = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, model.key("start").id)
     mujoco.mj_step(model, again, 5)
     mjbeer.reset(model, again, scene, 0.7, 2.0)

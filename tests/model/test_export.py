@@ -76,7 +76,8 @@ def assert_same(shown: mujoco.MjModel, path: pathlib.Path) -> None:
         assert np.allclose(getattr(read, name), getattr(shown, name), rtol=1e-14, atol=1e-15), name
     for name in OPTIONS:
         assert np.array_equal(getattr(read.opt, name), getattr(shown.opt, name)), name
-    one, other = mujoco.MjData(read), mujoco.MjData(shown)
+    one = mujoco.MjData(read)
+    other = mujoco.MjData(shown)
     for data, model in ((one, read), (other, shown)):
         data.qpos += 0.5
         mujoco.mj_kinematics(model, data)
@@ -91,7 +92,9 @@ def assert_same(shown: mujoco.MjModel, path: pathlib.Path) -> None:
 def test_an_export_is_the_model_and_moves_exactly(
     name: str, rolling: Rolling, portable: bool, tmp_path: pathlib.Path
 ) -> None:
-    scene, path, timestep = SCENES[name], tmp_path / "model.xml", others.timestep(name)
+    scene = SCENES[name]
+    path = tmp_path / "model.xml"
+    timestep = others.timestep(name)
     export(scene, path, *START, rolling, timestep=timestep, friction=FRICTION, portable=portable)
     text = path.read_text()
     assert not re.search(r"\b(file|\w+dir)=|<include", text)
@@ -102,7 +105,8 @@ def test_an_export_is_the_model_and_moves_exactly(
         add_start(spec, scene, *START)
         assert_same(spec.compile(), path)
         return
-    shown, read = rolling_spec(scene, Setting(rolling), visuals=True).compile(), mujoco.MjModel.from_xml_path(str(path))
+    shown = rolling_spec(scene, Setting(rolling), visuals=True).compile()
+    read = mujoco.MjModel.from_xml_path(str(path))
     for camera in ("side", "quarter"):  # they were in a frame
         sights = [model.cam_mat0[model.camera(camera).id] for model in (shown, read)]
         assert np.allclose(*sights, rtol=0, atol=1e-12)  # products of at most five rotations
@@ -112,7 +116,7 @@ def test_an_export_is_the_model_and_moves_exactly(
     for body in root.iter("body"):
         inertial = body.find("inertial")
         assert inertial is not None
-        assert all(float(each) > 0 for each in (inertial.attrib["mass"], *inertial.attrib["diaginertia"].split()))
+        assert all(float(number) > 0 for number in (inertial.attrib["mass"], *inertial.attrib["diaginertia"].split()))
         assert body.find("joint") is not None
 
 
@@ -122,7 +126,7 @@ def test_a_portable_export_has_damping_as_one_number(rolling: Rolling, tmp_path:
     path = tmp_path / "model.xml"
     export(sliding(can=METAL, damping=1 / 3), path, *START, rolling, portable=True)
     kind, name = ("fixed", "damper") if rolling == "reduced" else ("joint", "swing")
-    (damper,) = (each for each in ET.parse(path).getroot().iter(kind) if each.get("name") == name)
+    (damper,) = (element for element in ET.parse(path).getroot().iter(kind) if element.get("name") == name)
     assert float(damper.attrib["damping"]) == 1 / 3
 
 
@@ -135,8 +139,10 @@ def test_cans_of_every_size(
 ) -> None:
     """With the joints of a portable equality in the other order a row reaches 1 % of its force for a can of 1 mm."""
     # Time goes as the root of the size, and so do the timestep and the duration that are as hard to simulate.
-    scene, pace = make(can=Can.sheet_metal(radius, 4 * radius, radius / 300)), math.sqrt(radius / 0.033)
-    path, start = tmp_path / "model.xml", (START[0], START[1] / pace)
+    scene = make(can=Can.sheet_metal(radius, 4 * radius, radius / 300))
+    pace = math.sqrt(radius / 0.033)
+    path = tmp_path / "model.xml"
+    start = (START[0], START[1] / pace)
     export(scene, path, *start, rolling, timestep=1e-3 * pace, friction=FRICTION, portable=True)
     assert move(path, scene, start, 0.3 * pace) < TOLERANCE[rolling]
 
@@ -191,8 +197,11 @@ def test_what_cannot_be_written_is_refused(
 @pytest.mark.parametrize(("name", "rolling"), CASES)
 def test_sensors_have_the_values_of_the_letters(name: str, rolling: Rolling) -> None:
     """And the kinetic energy, or none where a constant force stands for a weight."""
-    scene, phi, phi_dot = SCENES[name], 1.1, -7.0
-    model, (u, u_dot) = rolling_spec(scene, Setting(rolling), visuals=True).compile(), scene.initial_axis(phi, phi_dot)
+    scene = SCENES[name]
+    phi = 1.1
+    phi_dot = -7.0
+    model = rolling_spec(scene, Setting(rolling), visuals=True).compile()
+    u, u_dot = scene.initial_axis(phi, phi_dot)
     data = mujoco.MjData(model)
     data.qpos[:], data.qvel[:] = np.split(initial_state(model, scene, phi, phi_dot), 2)
     mujoco.mj_forward(model, data)
@@ -231,7 +240,7 @@ def test_others_load_portable_exports_and_move_them_exactly(name: str) -> None:
     found = others.errors(other)
     assert list(found) == others.cases()
     allowed = ALLOWED[other.precise]
-    wrong = {case: each for case, each in found.items() if isinstance(each, str) or not each < allowed[case[1]]}
+    wrong = {case: error for case, error in found.items() if isinstance(error, str) or not error < allowed[case[1]]}
     assert not wrong
 
 

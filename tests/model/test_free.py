@@ -31,7 +31,8 @@ def test_a_lying_can_has_the_inertia_of_its_parts(fill: float) -> None:
     # The mesh is a polygon of 256 edges, and short of the circle by 6e-4.
     assert np.sort(inertia) == pytest.approx(np.sort(model.body("beer").inertia), rel=2e-3)
     sheet = 2 * math.pi * METAL.radius * 0.27
-    wall, end = sheet * METAL.length, sheet * METAL.radius / 2
+    wall = sheet * METAL.length
+    end = sheet * METAL.radius / 2
     across = wall * (METAL.radius**2 / 2 + METAL.length**2 / 12) + 2 * end * (METAL.radius**2 + METAL.length**2) / 4
     assert free.transverse_inertia(METAL) == pytest.approx(across, rel=1e-12)
     assert free.transverse_inertia(Can.hoop()) == pytest.approx(Can.hoop().inertia / 2 + 0.05 * 0.12**2 / 12, rel=1e-12)
@@ -39,7 +40,8 @@ def test_a_lying_can_has_the_inertia_of_its_parts(fill: float) -> None:
 
 def test_the_sensors_tell_the_slosh() -> None:
     """A can that is held at a tilt: the pendulum is plumb."""
-    can, tilt = standing(), 0.1
+    can = standing()
+    tilt = 0.1
     model = build(can, free=False)
     model.body("can").quat = [math.cos(tilt / 2), 0, math.sin(tilt / 2), 0]
     data = mujoco.MjData(model)
@@ -108,7 +110,8 @@ def test_a_template_that_lacks_something_is_named(copy: pathlib.Path) -> None:
 
 def test_the_template_of_a_lying_can_is_the_model_and_rolls_as_theory_says() -> None:
     template = mujoco.MjModel.from_xml_path(str(setting.mjcf_folder() / "lying.xml"))
-    spec, scene = mujoco.MjSpec(), sliding(can=METAL)
+    spec = mujoco.MjSpec()
+    scene = sliding(can=METAL)
     spec.option.timestep = 1e-3
     attach(spec, scene)
     made = spec.compile()
@@ -147,7 +150,8 @@ def test_a_standing_can_is_exported(portable: bool, tmp_path: pathlib.Path) -> N
 
 
 def test_the_command_line_exports_a_standing_can(tmp_path: pathlib.Path) -> None:
-    said, meant = tmp_path / "said.xml", tmp_path / "meant.xml"
+    said = tmp_path / "said.xml"
+    meant = tmp_path / "meant.xml"
     words = "export standing --liquid water --fill 0.3 --length 0.15 --modes 2 --damping-ratio 0.01 --timestep 2e-3"
     assert main([*words.split(), "--portable", "--output", str(said)]) == 0
     can = standing("water", 0.3, Can.sheet_metal(length=0.15), 2, 0.01)
@@ -158,7 +162,8 @@ def test_the_command_line_exports_a_standing_can(tmp_path: pathlib.Path) -> None
 @pytest.mark.slow
 def test_the_rows_find_a_wrong_model(monkeypatch: pytest.MonkeyPatch) -> None:
     """Modes left out at their bobs instead of their pivots, and no breaking waves."""
-    can, other = measured.water(2, 0.45), measured.water(2, 0.55)
+    can = measured.water(2, 0.45)
+    other = measured.water(2, 0.55)
     # Differences of a step of 1e-4 give the model's stiffness to 1e-8, and errors of 2e-3 to 1e-5 of themselves.
     assert measured.reaction_errors(can) == pytest.approx(measured.left_out(can), rel=1e-4)
     moments = other.fixed_moments()

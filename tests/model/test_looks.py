@@ -45,7 +45,8 @@ def vertices(model: mujoco.MjModel, data: mujoco.MjData, name: str | None = None
     found = []
     for geom in map(model.geom, range(model.ngeom)):
         if geom.type == mujoco.mjtGeom.mjGEOM_MESH and name in (None, geom.name):
-            shape, pose = model.mesh(int(geom.dataid[0])), data.geom(geom.name)
+            shape = model.mesh(int(geom.dataid[0]))
+            pose = data.geom(geom.name)
             local = model.mesh_vert[shape.vertadr[0] : shape.vertadr[0] + shape.vertnum[0]]
             found.append(local @ pose.xmat.reshape(3, 3).T + pose.xpos)
     return np.concatenate(found)
@@ -56,17 +57,19 @@ def test_a_template_s_own_scene_is_drawn_as_the_template(name: str) -> None:
     model, one = written(name)
     built, other = shown(TEMPLATES[name], "contact" if name == "hoop" else "equality")
     assert drawn(model) == drawn(built)
-    for each in drawn(model):
-        assert model.geom(each).matid == built.geom(each).matid
-        if model.geom(each).type == mujoco.mjtGeom.mjGEOM_MESH:  # a mesh's axes are arbitrary if it is symmetric
-            assert np.allclose(vertices(model, one, each), vertices(built, other, each), atol=WRITTEN * LENGTH), each
+    for element in drawn(model):
+        assert model.geom(element).matid == built.geom(element).matid
+        if model.geom(element).type == mujoco.mjtGeom.mjGEOM_MESH:  # a mesh's axes are arbitrary if it is symmetric
+            assert np.allclose(vertices(model, one, element), vertices(built, other, element), atol=WRITTEN * LENGTH), (
+                element
+            )
         else:
-            assert np.allclose(one.geom(each).xpos, other.geom(each).xpos, atol=WRITTEN * RADIUS), each
-            assert np.allclose(one.geom(each).xmat, other.geom(each).xmat, atol=WRITTEN), each
-            assert np.allclose(model.geom(each).size, built.geom(each).size, atol=WRITTEN), each
-    for each in CAMERAS:
-        assert np.allclose(one.camera(each).xpos, other.camera(each).xpos, atol=WRITTEN)
-        assert np.allclose(one.camera(each).xmat, other.camera(each).xmat, atol=WRITTEN)
+            assert np.allclose(one.geom(element).xpos, other.geom(element).xpos, atol=WRITTEN * RADIUS), element
+            assert np.allclose(one.geom(element).xmat, other.geom(element).xmat, atol=WRITTEN), element
+            assert np.allclose(model.geom(element).size, built.geom(element).size, atol=WRITTEN), element
+    for element in CAMERAS:
+        assert np.allclose(one.camera(element).xpos, other.camera(element).xpos, atol=WRITTEN)
+        assert np.allclose(one.camera(element).xmat, other.camera(element).xmat, atol=WRITTEN)
     # The drawn wall is outside of the radius, so the board is lower than the surface by as much.
     board = model.geom("board")
     assert board.pos[2] + board.size[2] == pytest.approx(-looks.WALL * RADIUS, rel=1e-9)
@@ -101,7 +104,8 @@ def test_the_load_is_the_true_segment_with_foam_on_it(fill: float) -> None:
 def test_a_stripe_of_the_board_is_a_quarter_turn(radius: float) -> None:
     """And one begins at u = 0: so the can's mark comes round every four. The board has 10,000 radii each way."""
     model, _ = shown(frozen(can=Can.sheet_metal(radius)))
-    middle, half = model.geom("board").pos[0], model.geom("board").size[0]
+    middle = model.geom("board").pos[0]
+    half = model.geom("board").size[0]
     assert half - abs(middle) > 1e4 * radius
     stripe = half / model.mat("planks").texrepeat[0]  # two to a repeat of the checkered texture
     assert stripe == pytest.approx(math.pi / 2 * radius, rel=1e-6)
@@ -112,7 +116,7 @@ def test_a_stripe_of_the_board_is_a_quarter_turn(radius: float) -> None:
 def test_marks_turn_with_the_can_or_are_not_there_and_ice_has_no_foam() -> None:
     found = {rolling: "can_mark" in drawn(shown(pendulum(), rolling)[0]) for rolling in ROLLINGS}
     assert found == {"reduced": False, "equality": True, "contact": True}
-    models = [shown(TEMPLATES[each])[0] for each in ("sliding", "frozen")]
+    models = [shown(TEMPLATES[element])[0] for element in ("sliding", "frozen")]
     assert ["foam" in drawn(model) for model in models] == [True, False]
     assert [model.mat(int(model.geom("load").matid[0])).name for model in models] == ["beer", "ice"]
-    assert tuple(each for each in looks.TURNING if each in {*drawn(models[0]), "can_spokes"}) == looks.TURNING
+    assert tuple(element for element in looks.TURNING if element in {*drawn(models[0]), "can_spokes"}) == looks.TURNING

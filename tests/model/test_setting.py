@@ -11,7 +11,8 @@ from mjbeer.studies.benchmark.timing import usual_model
 
 @pytest.mark.parametrize("written", USUAL)
 def test_constraints_are_mujoco_s_defaults(written: str) -> None:
-    model, stock = usual_model(written, frozen()), mujoco.MjSpec().option
+    model = usual_model(written, frozen())
+    stock = mujoco.MjSpec().option
     kind = "eq" if model.neq else "pair"
     assert getattr(model, f"{kind}_solref")[0].tolist() == [0.02, 1]
     assert getattr(model, f"{kind}_solimp")[0].tolist() == [0.9, 0.95, 0.001, 0.5, 2]

@@ -46,14 +46,15 @@ def load(name: str) -> mujoco.MjModel:
 
 def phi(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[float, float]:
     joints = [data.joint(name) for name in joint_addresses(model) if name in ("roll", "swing", "phi")]
-    return sum(float(each.qpos[0]) for each in joints), sum(float(each.qvel[0]) for each in joints)
+    return sum(float(joint.qpos[0]) for joint in joints), sum(float(joint.qvel[0]) for joint in joints)
 
 
 def roll(model: mujoco.MjModel, key: str, duration: float) -> tuple[np.ndarray, np.ndarray, mujoco.MjData]:
     """Times and phi of plain mj_step from a keyframe."""
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, model.key(key).id)
-    times, angles = [0.0], [phi(model, data)[0]]
+    times = [0.0]
+    angles = [phi(model, data)[0]]
     while data.time < duration:
         mujoco.mj_step(model, data)
         times.append(data.time)
@@ -65,10 +66,12 @@ def roll(model: mujoco.MjModel, key: str, duration: float) -> tuple[np.ndarray, 
 @pytest.mark.parametrize(("name", "key"), KEYS)
 def test_keyframes_move_as_theory_says(name: str, key: str) -> None:
     """For 2 s; the hoop until it hops."""
-    scene, model = FILES[name], load(name)
+    scene = FILES[name]
+    model = load(name)
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, model.key(key).id)
-    start, joints = phi(model, data), joint_addresses(model)
+    start = phi(model, data)
+    joints = joint_addresses(model)
     assert np.allclose(data.qpos, initial_joints(joints, scene, *start)[0], rtol=1e-11, atol=1e-15)
     hops = exact(scene, np.linspace(0, 2, 20_001), *start).rolls_until() if name == "hoop" else math.inf
     times, angles, data = roll(model, key, 2.0)
@@ -114,7 +117,9 @@ def test_the_readme_lists_the_parameters_and_what_can_be_named() -> None:
     sections = (OWN / "README.md").read_text().split("\n## ")
     told = {text.partition("\n")[0]: text for text in sections}
     table = re.findall(r"^\| `(.*?)` \| `(.*?)` \|.*\| ([^|]*) \|$", told["Parameters"], re.MULTILINE)
-    rows = [(element, each, files) for element, attributes, files in table for each in attributes.split("`, `")]
+    rows = [
+        (element, attribute, files) for element, attributes, files in table for attribute in attributes.split("`, `")
+    ]
     for name, (scene, rolling) in MECHANICS.items():
         written = {(element, attribute) for element, attribute in ModelNumbers(scene, Setting(rolling)).parameters}
         here = {(element, attribute) for element, attribute, files in rows if fits(name, files)}
@@ -123,7 +128,7 @@ def test_the_readme_lists_the_parameters_and_what_can_be_named() -> None:
         names = set(re.findall("`([^`]*)`", told[section]))
         for name in FILES:
             spec = mujoco.MjSpec.from_file(str(OWN / f"{name}.xml"))
-            assert {each.name for each in getattr(spec, kind)} <= names, (name, kind)
+            assert {named.name for named in getattr(spec, kind)} <= names, (name, kind)
 
 
 def fits(name: str, files: str) -> bool:
@@ -155,9 +160,13 @@ def test_a_parameter_that_has_no_place_is_named(copy: pathlib.Path) -> None:
 
 REDUCED, EQUALITY, CONTACT = (f"mechanics/sliding_{rolling}" for rolling in ROLLINGS)
 FROZEN = "mechanics/frozen_reduced"
-CAN, OUTER = '<body name="can" pos="0 0 0.033">', "</mujoco>"
-PHI, SWING = '<joint name="phi" axis="0 1 0"', '<joint name="swing" axis="0 1 0" damping="0 0 0"'
-SAME, ERROR, PARAMETER = "nothing changes", "an error", "an error that names the parameter"
+CAN = '<body name="can" pos="0 0 0.033">'
+OUTER = "</mujoco>"
+PHI = '<joint name="phi" axis="0 1 0"'
+SWING = '<joint name="swing" axis="0 1 0" damping="0 0 0"'
+SAME = "nothing changes"
+ERROR = "an error"
+PARAMETER = "an error that names the parameter"
 # In which file, what is replaced by what, and what comes of it.
 EDITS = {
     "colour": ("assets", "0.98 0.63 0.08 1", "0 1 0 1", SAME),
@@ -296,12 +305,14 @@ def test_a_contact_needs_its_options() -> None:
 def test_a_constraint_that_is_softer_is_stepped_as_it_stands(copy: pathlib.Path) -> None:
     """Its accelerations are those of rolling, and what it creeps shows in the run."""
     edit(copy, "mechanics/frozen_contact", 'solimp="0.9999 0.9999"', 'solimp="0.9 0.9"')
-    hard, soft = (simulate(frozen(), 0.5, 1.0, rolling="contact", mjcf=each) for each in (OWN, None))
+    hard, soft = (simulate(frozen(), 0.5, 1.0, rolling="contact", mjcf=folder) for folder in (OWN, None))
     assert np.abs(soft.slip).max() > 100 * np.abs(hard.slip).max()
 
 
-ROLL, SLIDE = '<joint name="roll" axis="0 1 0"', '<joint name="slide" type="slide" axis="1 0 0" damping="0 0 0"'
-SURFACE, WALL = '<body name="can"', '<geom name="wall" type="box" size="0.01 1 1" pos="0.2 0 0.5"'
+ROLL = '<joint name="roll" axis="0 1 0"'
+SLIDE = '<joint name="slide" type="slide" axis="1 0 0" damping="0 0 0"'
+SURFACE = '<body name="can"'
+WALL = '<geom name="wall" type="box" size="0.01 1 1" pos="0.2 0 0.5"'
 # What acts only later in a run, or nowhere near the states at which a file is compared with theory: in which file,
 # what is replaced by what, and what else. The can leaves the first centimetres after 0.1 s.
 LATE = {
@@ -372,7 +383,8 @@ def test_all_files_move_as_theory_says() -> None:
 def test_a_file_that_is_edited_between_two_calls_is_read_again(file: str, copy: pathlib.Path) -> None:
     """Or one that it includes: by runs, and by models, whose warning goes once the file is restored."""
     scene = sliding(can=METAL)
-    path, mechanics = copy / f"{file}.xml", copy / "mechanics" / "sliding_equality.xml"
+    path = copy / f"{file}.xml"
+    mechanics = copy / "mechanics" / "sliding_equality.xml"
     if path != mechanics:
         text = mechanics.read_text()
         (part,) = re.findall(r"<equality>.*</equality>", text, re.DOTALL)
@@ -442,7 +454,8 @@ def test_what_is_drawn_of_a_standing_can_s_beer_stays_inside_the_wall(fill: floa
         data.joint("slosh1").qpos[:] = quat / np.linalg.norm(quat)
         mujoco.mj_kinematics(model, data)
         for name in ("beer", "beer_top"):
-            drawn, (wide, half, _) = data.geom(name), model.geom(name).size
+            drawn = data.geom(name)
+            (wide, half, _) = model.geom(name).size
             rims = [np.stack([wide * np.cos(turn), wide * np.sin(turn), 0 * turn + end]) for end in (-half, half)]
             x, y, z = drawn.xmat.reshape(3, 3) @ np.concatenate(rims, axis=1) + drawn.xpos[:, np.newaxis]
             assert np.hypot(x, y).max() < radius * (1 + 1e-6)  # the file has ten digits

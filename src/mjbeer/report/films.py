@@ -23,7 +23,7 @@ _STEEPER = math.radians(7.1)
 """Incline of the race of liquids [rad]: let go with a level surface, ice rolls over the top from 6.93 degrees on, and
 honey, the thickest of the liquids, from 7.38."""
 _FILL = 0.75  # how full the cans are that are neither full nor empty
-_EMPTY = 2e-4  # fill of the empty can: its beer weighs less than a thousandth of the can
+_EMPTY: Any = {"fill": 0.01, "density": 25.0}  # of the empty can: what is in it weighs a thousandth of the can
 _ICE = 917.0  # density of ice [kg/m^3]
 WITH_LIQUID: Any = {"incline": _STEEPER, "fill": _FILL, "can": METAL}
 _HESITATES: Any = {"strips": ("u_dot", "ahead"), "marks": ("phi", "ghost"), "notes": ("hesitates",)}
@@ -47,7 +47,7 @@ def of_beer() -> Sequence[Runner]:
         ("beer slides", sliding(_GENTLE, can=METAL, fill=_FILL), 30, (0.75, 0.38, 0.0), "¾ full, starts at φ = 30°"),
         ("beer frozen", frozen(_GENTLE, can=METAL, fill=_FILL), 180, (0.15, 0.42, 0.72), "¾ full, starts upside down"),
         ("beer frozen, full", frozen(_GENTLE, can=METAL, fill=1.0), 0, (0.40, 0.25, 0.60), ""),
-        ("empty", sliding(_GENTLE, can=METAL, fill=_EMPTY), 0, (0.30, 0.33, 0.37), ""),
+        ("empty", sliding(_GENTLE, can=METAL, **_EMPTY), 0, (0.30, 0.33, 0.37), ""),
     )
     return [
         Runner(name, simulate(scene, 2.35, math.radians(phi0), tolerance=1e-9), colour, note=note)

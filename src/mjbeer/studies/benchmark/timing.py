@@ -69,12 +69,23 @@ def conduct(names: Sequence[str], quick: bool, console: Console | None) -> Bench
 
 
 def usual_model(name: str, scene: Scene) -> mujoco.MjModel:
-    """Return a model as people usually write it, with MuJoCo's defaults wherever there are any."""
-    spec, stock = specify(scene, points.USUAL[name], integrator="Euler", timestep=2e-3), mujoco.MjSpec().option
-    spec.option.enableflags, spec.option.impratio, spec.option.cone = stock.enableflags, stock.impratio, stock.cone
+    """Return a model as people usually write it, with MuJoCo's defaults wherever there are any.
+
+    The equality is written as u = a roll, in metres.
+    """
+    spec = specify(scene, points.USUAL[name], integrator="Euler", timestep=2e-3)
+    stock = mujoco.MjSpec().option
+    spec.option.enableflags = stock.enableflags
+    spec.option.impratio = stock.impratio
+    spec.option.cone = stock.cone
     spec.option.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_REFSAFE)
+    for equality in spec.equalities:
+        equality.name1 = "slide"
+        equality.name2 = "roll"
+        equality.data[:5] = [0.0, scene.can.radius, 0.0, 0.0, 0.0]
     for constraint in (*spec.equalities, *spec.pairs):
-        constraint.solref, constraint.solimp = (0.02, 1), (0.9, 0.95, 0.001, 0.5, 2)
+        constraint.solref = (0.02, 1)
+        constraint.solimp = (0.9, 0.95, 0.001, 0.5, 2)
     return spec.compile()
 
 
