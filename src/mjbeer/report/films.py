@@ -23,7 +23,7 @@ _STEEPER = math.radians(7.1)
 """Incline of the race of liquids [rad]: let go with a level surface, ice rolls over the top from 6.93 degrees on, and
 honey, the thickest of the liquids, from 7.38."""
 _FILL = 0.75  # how full the cans are that are neither full nor empty
-_EMPTY: Any = {"fill": 0.01, "density": 25.0}  # of the empty can: what is in it weighs a thousandth of the can
+_EMPTY: Any = {"fill": 0.01, "density": 12.5}  # of the empty can: what is in it weighs a thousandth of the can
 _ICE = 917.0  # density of ice [kg/m^3]
 WITH_LIQUID: Any = {"incline": _STEEPER, "fill": _FILL, "can": METAL}
 _HESITATES: Any = {"strips": ("u_dot", "ahead"), "marks": ("phi", "ghost"), "notes": ("hesitates",)}
