@@ -1,5 +1,6 @@
 """simulate: samples, errors, repeatability, divergence, and the diagnostics a run carries."""
 
+import dataclasses
 import math
 import re
 import warnings
@@ -10,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mjbeer import Can, Load, Scene, Trajectory, exact, frozen, hoop, liquid, pendulum, simulate, sliding
+from mjbeer import Can, Load, Run, Scene, Trajectory, exact, frozen, hoop, liquid, pendulum, simulate, sliding
 from mjbeer.cli.app import parse
 from mjbeer.cli.motions import trajectory_of
 from mjbeer.exceptions import (
@@ -419,3 +420,14 @@ def test_times_need_no_duration() -> None:
     assert simulate(sliding(), phi0=0.3).time[-1] == 2
     with pytest.raises(ParameterError, match=r"times must be between 0 and the duration 2.0 s, got 5.0 s"):
         simulate(sliding(), 2, times=[0, 5])
+
+
+@pytest.mark.parametrize("name", ["record", "diagnosis"])
+def test_a_run_is_not_made_without_what_it_says_of_itself(name: str) -> None:
+    """`Trajectory` has properties of these names, which must not become the defaults of the fields."""
+    run = simulate(sliding(), 0.1, 1.0)
+    values = {field.name: getattr(run, field.name) for field in dataclasses.fields(run)}
+    assert Run(**values).record is run.record
+    del values[name]
+    with pytest.raises(TypeError, match=f"'{name}'"):
+        Run(**values)

@@ -26,7 +26,7 @@ class Run(Trajectory):
 
     setting: Setting
     """How the can was made to roll and how it was stepped."""
-    record: Record = field()  # has no default, which the property of `Trajectory` would be
+    record: Record = field()  # else the property of `Trajectory` would be its default
     """The extremes of the motion over all its steps, on which its warnings rest."""
     diagnosis: Diagnosis = field()
     """What the record says against the motion."""

@@ -40,8 +40,8 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from mjbeer.exceptions import ToleranceError
-from mjbeer.theory.equations import InitialState, accelerations, slip_rate_of
-from mjbeer.theory.motion import ROUNDINGS, UNCERTAIN, Launch
+from mjbeer.theory.equations import AxisMotion, InitialState, accelerations, slip_rate_of
+from mjbeer.theory.motion import ROUNDINGS, UNCERTAIN, Launch, SwingMotion
 from mjbeer.theory.oscillator import reduced, root
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.travel_time import EPS
@@ -68,20 +68,7 @@ _STATE = slice(0, 3)
 """Rows of phi, phi_dot and w."""
 
 
-class DampedMotion(NamedTuple):
-    """A motion at some times."""
-
-    phi: np.ndarray
-    """[rad]"""
-    phi_dot: np.ndarray
-    """[rad/s]"""
-    u: np.ndarray
-    """[m]"""
-    u_dot: np.ndarray
-    """[m/s]"""
-
-
-def solve(scene: Scene, time: np.ndarray, start: InitialState) -> DampedMotion:
+def solve(scene: Scene, time: np.ndarray, start: InitialState) -> tuple[SwingMotion, AxisMotion]:
     """Return the motion of a scene with damping or drag at increasing times [s], none negative.
 
     Raises:
@@ -90,16 +77,13 @@ def solve(scene: Scene, time: np.ndarray, start: InitialState) -> DampedMotion:
     radius = scene.can.radius
     if scene.incline == 0 and Launch.of(scene.oscillator, start.phi, start.phi_dot).stays:
         zeros = np.zeros_like(time)
-        return DampedMotion(start.phi + zeros, zeros, start.u + zeros, zeros)
+        return SwingMotion(start.phi + zeros, zeros), AxisMotion(start.u + zeros, zeros)
     slip_rate = slip_rate_of(scene, start.phi_dot, start.u_dot)
     state = np.array([reduced(start.phi), start.phi_dot, slip_rate])
     samples = _integrate(Equations(scene), time, state)
-    return DampedMotion(
-        phi=start.phi + samples.delta_phi,
-        phi_dot=samples.phi_dot,
-        u=start.u + radius * samples.delta_roll,
-        u_dot=radius * (samples.phi_dot + samples.slip_rate),
-    )
+    swing = SwingMotion(start.phi + samples.delta_phi, samples.phi_dot)
+    roll_dot = samples.phi_dot + samples.slip_rate
+    return swing, AxisMotion(start.u + radius * samples.delta_roll, radius * roll_dot)
 
 
 # The equations and their derivatives
@@ -235,12 +219,12 @@ class Step(NamedTuple):
     """A step that was solved, as Legendre series over its length."""
 
     length: float
-    """[s]"""
+    """Its length [s]."""
     stages: Stages
     rates: np.ndarray
     """The series of phi_dot and w, of shape (1 + stages, 2)."""
     angles: np.ndarray
-    """Those of the angles by which phi and roll turn, of the same shape."""
+    """The series of the angles by which phi and roll turn, of the same shape."""
 
     def sample(self, since: np.ndarray) -> np.ndarray:
         """Return how far phi and roll turn [rad], phi_dot and w [rad/s] at times [s] within it."""
@@ -252,11 +236,11 @@ class Trial(NamedTuple):
     """What has come of trying a step."""
 
     corrections: int
-    """Of Newton's method."""
+    """How many Newton's method made."""
     next_length: float
-    """To try next [s]."""
+    """The length to try next [s]."""
     step: Step | None
-    """None if the step must be shorter."""
+    """The step that was solved; None if it must be shorter."""
 
 
 # From step to step

@@ -14,7 +14,6 @@ from mjbeer import require
 from mjbeer.exceptions import MjbeerError, ParameterError
 from mjbeer.theory import damped_motion, equations, motion
 from mjbeer.theory.equations import (
-    AxisMotion,
     Coordinates,
     Forces,
     accelerations,
@@ -232,9 +231,7 @@ def exact_motion(scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float) -
     try:
         with np.errstate(over="raise", invalid="raise", divide="raise"):
             if scene.dissipates:
-                damped = damped_motion.solve(scene, time, start)
-                swing = motion.SwingMotion(damped.phi, damped.phi_dot)
-                axis = AxisMotion(damped.u, damped.u_dot)
+                swing, axis = damped_motion.solve(scene, time, start)
             else:
                 swing = motion.solve(scene.oscillator, time, phi0, phi_dot0)
                 axis = axis_motion(scene, time, swing.phi, swing.phi_dot, start)
