@@ -64,6 +64,8 @@ class Forces:
 def scene_numbers(scene: Scene) -> SceneNumbers:
     """Return the numbers of a scene that the formulas need."""
     swing = scene.oscillator
+    moment = scene.load.moment
+    effective_mass = scene.effective_mass
     return SceneNumbers(
         base=swing.base,
         chord=swing.chord,
@@ -78,10 +80,10 @@ def scene_numbers(scene: Scene) -> SceneNumbers:
         load_mass=scene.load.mass,
         load_inertia=scene.load.inertia,
         offset=scene.load.offset,
-        moment=scene.load.moment,
+        moment=moment,
         total_mass=scene.mass,
-        effective_mass=scene.effective_mass,
-        arm=scene.load.moment / scene.effective_mass,
+        effective_mass=effective_mass,
+        arm=moment / effective_mass,
         along=scene.gravity * math.sin(scene.incline),
         across=scene.gravity * math.cos(scene.incline),
     )
