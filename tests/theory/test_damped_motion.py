@@ -82,18 +82,18 @@ def test_motion_is_that_of_a_taylor_series(scene: Scene, phi0: float, phi_dot0: 
 def test_rates_have_the_derivatives_that_are_derived() -> None:
     """By central differences, in states away from the corners; measured: 2e-10 of the rates."""
     scene = sliding(0.3, can=METAL, damping=Damping(1e-3, 1e-5, 1e-6), drag=0.05)
-    rates_of = Equations(scene).rates
+    accelerations_of = Equations(scene).accelerations
     pick = np.random.default_rng(4407)
     for _ in range(20):
         state = pick.uniform([-3, 5, 5], [3, 20, 20]) * pick.choice([-1, 1], 3)
         if abs(state[1] + state[2]) < 1:  # near the corner of the drag
             continue
-        values, jacobian = rates_of(*state)
+        values, jacobian = accelerations_of(*state)
         step = 1e-5
         for variable in range(3):
             change = step * np.eye(3)[variable]
-            ahead, _ = rates_of(*(state + change))
-            behind, _ = rates_of(*(state - change))
+            ahead, _ = accelerations_of(*(state + change))
+            behind, _ = accelerations_of(*(state - change))
             difference = (ahead - behind) / (2 * step)
             assert jacobian[:, variable] == pytest.approx(difference, abs=1e-9 * (1 + np.abs(values).max()))
 

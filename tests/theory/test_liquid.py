@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 
 from mjbeer import LiquidWarning, exact, liquid, sliding
 from mjbeer.theory.can import segment
-from mjbeer.theory.equations import slip_rate
+from mjbeer.theory.equations import slip_rate_of
 from mjbeer.theory.liquid import ENDS, FILM_LOAD, WALL, liquid_in, lump_warning
 from tests.support.scenes import METAL
 
@@ -143,7 +143,7 @@ def test_a_run_says_when_its_liquid_is_no_lump_any_more() -> None:
     time = run.record.no_lump_at
     speed = float(np.interp(time, run.time, run.u_dot))
     assert speed == pytest.approx(math.sqrt(9.81 * math.cos(scene.incline) * 0.033), rel=2e-3)  # a sample later
-    assert run.record.largest_slip_rate == np.abs(slip_rate(scene, run.phi_dot, run.u_dot)).max()
+    assert run.record.largest_slip_rate == np.abs(slip_rate_of(scene, run.phi_dot, run.u_dot)).max()
     (told,) = run.liquid_warnings
     assert f"the liquid as one lump is an order of magnitude only: from t = {time:.6g} s on the wall's" in told
     assert told in run.warnings

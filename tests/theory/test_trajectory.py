@@ -13,7 +13,7 @@ from mjbeer import MjbeerError, Scene, Trajectory, exact, frozen, hoop, pendulum
 from mjbeer.exceptions import OutputError
 from mjbeer.theory.equations import Coordinates, select_samples
 from mjbeer.theory.record import ERROR, LIFT, SLIP, Record, RecordMaker, failed_checks, rolling_failures
-from mjbeer.theory.trajectory import csv
+from mjbeer.theory.trajectory import csv, largest_angle_error
 from tests.support.scenes import METAL, SCENES
 
 # After 2 s the can as a whole has some thousand times the energy of the swing, to which a drift is compared.
@@ -118,7 +118,7 @@ def test_a_lost_momentum_is_noticed(scene: Scene) -> None:
 
 def test_a_record_does_not_depend_on_how_a_motion_is_cut() -> None:
     """Not even where rolling stops being possible between two pieces."""
-    motion = exact(frozen(), TIME, math.pi)
+    motion = gaining(exact(frozen(), TIME, math.pi), 1e-2)
     whole = Record.of(motion, motion.scene)
     maker = RecordMaker(motion.scene)
     fails = int(np.searchsorted(TIME, whole.rolling_ends_at))
@@ -130,7 +130,9 @@ def test_a_record_does_not_depend_on_how_a_motion_is_cut() -> None:
         *("energy_drift", "axis_drift"),
     ):
         assert getattr(pieces, name) == getattr(whole, name)
-    assert pieces.angle_covered == pytest.approx(whole.angle_covered, rel=1e-12)  # the order of a sum
+    assert pieces.swing_drift == pytest.approx(
+        whole.swing_drift, rel=1e-9, abs=0.0
+    )  # the order of a sum of rounded energies
 
 
 @pytest.mark.parametrize("name", ["phi", "u", "phi_dot", "roll", "lift"])
@@ -151,9 +153,9 @@ def test_frozen_can_from_the_top_leaves_the_incline() -> None:
     late, fine = abs(until - crossing), exact(frozen(), np.linspace(0, 2, 4001), math.pi)
     assert late < TIME[1] / 10
     assert abs(fine.rolls_until() - crossing) < late / 50  # 100, but for where in between N is 0
-    assert rolling_failures(motion.record, "contact", 1.0) == [
-        "rolling needs a friction coefficient of inf, and the contact has 1: it slides"
-    ]
+    assert rolling_failures(motion.record, "contact", 1.0) == (
+        "rolling needs a friction coefficient of inf, and the contact has 1: it slides",
+    )
 
 
 def test_friction_that_holds() -> None:
@@ -199,3 +201,13 @@ def test_a_table_has_what_a_motion_has(tmp_path: pathlib.Path) -> None:
     assert (tmp_path / "run.csv").read_text() == csv(motion)
     with pytest.raises(OutputError, match="it is a folder"):
         motion.to_csv(tmp_path)
+
+
+def test_an_error_is_relative_to_the_way_so_far() -> None:
+    """Turned by 0.5, 4 and 1 rad: the second and the third error are divided by 4. And what is no number is far off."""
+    true_angles = np.array([[0.5], [4.0], [1.0]])
+    angles = true_angles + np.array([[0.1], [0.6], [0.8]])
+    assert largest_angle_error(angles, true_angles) == pytest.approx(0.8, rel=1e-15)
+    assert largest_angle_error(angles, true_angles, np.zeros(1)) == pytest.approx(0.2, rel=1e-15)
+    angles[1] = np.nan
+    assert largest_angle_error(angles, true_angles) == math.inf

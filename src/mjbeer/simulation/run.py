@@ -1,7 +1,7 @@
 """A simulated motion, and what it says about itself."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -26,9 +26,9 @@ class Run(Trajectory):
 
     setting: Setting
     """How the can was made to roll and how it was stepped."""
-    record: Record
+    record: Record = field()  # else the property of `Trajectory` would be its default
     """The extremes of the motion over all its steps, on which its warnings rest."""
-    diagnosis: Diagnosis
+    diagnosis: Diagnosis = field()
     """What the record says against the motion."""
     method: str
     """The name of the integrator; with a tolerance it is "GaussJackson" or "DOP853"."""
@@ -119,7 +119,7 @@ def diagnose_run(record: Record, setting: Setting, method: str, phi0: float, phi
     if record.scene.dissipates:
         # Damping slows the load, and the slower it is, the less even it turns: down to the rate that is no trouble.
         rate = min(abs(phi_dot0), _MAX_TURN_PER_STEP / timestep)
-    if record.scene.oscillator.unevenness(phi0, rate) <= ERROR:
+    if record.scene.oscillator.rate_variation(phi0, rate) <= ERROR:
         return diagnosis
     reason = (
         f"the load turns by {turn:.3g} rad in a timestep (trusted up to {_MAX_TURN_PER_STEP:g}), in which its weight "

@@ -21,6 +21,7 @@ for _formula in (
     formulas.swing_energy,
     formulas.potential_drop,
     formulas.phi_acceleration,
+    formulas.sideways_pull,
     formulas.axis_acceleration,
     formulas.normal_force,
     formulas.friction_of_frozen,
@@ -34,12 +35,10 @@ for _formula in (
 _EXTREMES = (
     "largest_turn",
     "largest_distance",
-    "angle_covered",
     "largest_rate",
     "swing_energy",
     "kinetic_energy",
     "energy_change",
-    "swing_change",
     "swing_drift",
     "axis_drift",
     "lowest_normal",
@@ -139,12 +138,11 @@ def _add_forces(numbers, friction, time, phi, phi_dot, passed, extremes):
 def _begin(numbers, friction, slides, state, passed, extremes):
     """Begin with the state in which the run starts."""
     u, phi, u_dot, phi_dot = _coordinates(numbers, slides, state)
-    arm = numbers.load_mass * numbers.offset / numbers.effective_mass
     kinetic = formulas.kinetic_energy(numbers, phi, phi_dot, u_dot, u_dot / numbers.radius, 0.0)
     passed.phi0 = phi
     passed.u0 = u
-    passed.mean_u0 = u - arm * math.sin(phi)
-    passed.mean_u_dot0 = u_dot - arm * math.cos(phi) * phi_dot
+    passed.mean_u0 = u - numbers.arm * math.sin(phi)
+    passed.mean_u_dot0 = u_dot - numbers.arm * math.cos(phi) * phi_dot
     passed.swing0 = formulas.swing_energy(numbers, phi, phi_dot)
     passed.energy0 = kinetic + formulas.potential_energy(numbers, phi, u, 0.0)
     passed.phi = phi
@@ -170,22 +168,19 @@ def _add_step(numbers, friction, slides, time, state, passed, extremes):
     energy = kinetic + formulas.potential_energy(numbers, phi, u, 0.0)
     swing = formulas.swing_energy(numbers, phi, phi_dot)
     change = swing - (passed.swing0 + formulas.potential_drop(numbers, phi, passed.phi0))
-    covered = abs(phi - passed.phi)
-    passed.drift += change * covered
+    passed.drift += change * abs(phi - passed.phi)
     extremes.largest_turn = max(extremes.largest_turn, abs(phi - passed.phi0))
     extremes.largest_distance = max(extremes.largest_distance, abs(u - passed.u0))
-    extremes.angle_covered += covered
     extremes.largest_rate = max(extremes.largest_rate, abs(phi_dot))
     extremes.swing_energy = max(extremes.swing_energy, swing)
     extremes.kinetic_energy = max(extremes.kinetic_energy, kinetic)
     extremes.energy_change = max(extremes.energy_change, abs(energy - passed.energy0))
-    extremes.swing_change = max(extremes.swing_change, abs(change))
     extremes.swing_drift = max(extremes.swing_drift, abs(passed.drift))
     if slides:  # a frozen load conserves no momentum
-        arm = numbers.load_mass * numbers.offset / numbers.effective_mass
         steady = numbers.total_mass * numbers.along / numbers.effective_mass
         expected = passed.mean_u0 + time * (passed.mean_u_dot0 + steady * time / 2)
-        extremes.axis_drift = max(extremes.axis_drift, abs(u - arm * math.sin(phi) - expected))
+        mean_u = u - numbers.arm * math.sin(phi)
+        extremes.axis_drift = max(extremes.axis_drift, abs(mean_u - expected))
     passed.time = time
     passed.phi = phi
     passed.phi_dot = phi_dot

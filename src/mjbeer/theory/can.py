@@ -9,11 +9,16 @@ import numpy as np
 from mjbeer import require
 from mjbeer.exceptions import ParameterError
 
-RADIUS = 0.033  # of a 12-oz can [m]; paper, after eq. (31)
-LENGTH = 0.12  # of a 12-oz can [m]; paper, after eq. (31)
-THICKNESS = 1e-4  # of the wall of an aluminium drinks can [m]; a common value: the paper has none
-ALUMINIUM = 2700.0  # density [kg/m^3]; handbook value
-BEER = 1000.0  # density [kg/m^3]: that of water, rounded, from which beer differs by about 1 %
+RADIUS = 0.033
+"""Radius of a 12-oz can [m]; paper, after eq. (31)."""
+LENGTH = 0.12
+"""Length of a 12-oz can [m]; paper, after eq. (31)."""
+THICKNESS = 1e-4
+"""Thickness of the wall of an aluminium drinks can [m]; a common value, as the paper has none."""
+ALUMINIUM = 2700.0
+"""Density of aluminium [kg/m^3]; handbook value."""
+BEER = 1000.0
+"""Density of beer [kg/m^3]: that of water, rounded, from which beer differs by about 1 %."""
 
 
 @dataclass(frozen=True)
@@ -185,11 +190,16 @@ class Load:
 class Segment(NamedTuple):
     """A segment of a circle of radius a, in units of a."""
 
-    half_angle: float  # half of the angle that the segment subtends at the axis, beta [rad]
-    area: float  # [a^2], eq. (33)
-    offset: float  # distance of the centroid from the axis [a], eq. (35)
-    inertia: float  # moment of inertia about the centroid per mass [a^2], eq. (37)
-    width: float  # mean square of the distance from the line of symmetry [a^2]
+    half_angle: float
+    """Half of the angle that the segment subtends at the axis, beta [rad]."""
+    area: float
+    """Area [a^2], eq. (33)."""
+    offset: float
+    """Distance of the centroid from the axis [a], eq. (35)."""
+    inertia: float
+    """Moment of inertia about the centroid per mass [a^2], eq. (37)."""
+    width: float
+    """Mean square of the distance from the line of symmetry [a^2]."""
 
 
 def segment(fill: float) -> Segment:

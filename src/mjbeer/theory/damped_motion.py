@@ -40,56 +40,62 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from mjbeer.exceptions import ToleranceError
-from mjbeer.theory.equations import accelerations
-from mjbeer.theory.motion import ROUNDINGS, UNCERTAIN, Launch
+from mjbeer.theory.equations import AxisMotion, InitialState, accelerations, slip_rate_of
+from mjbeer.theory.motion import ROUNDINGS, UNCERTAIN, Launch, SwingMotion
 from mjbeer.theory.oscillator import reduced, root
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.travel_time import EPS
 
-_STAGES = 24  # s in formulas; a swing then takes some five steps a period
-_MOST_CORRECTIONS = 6_000  # of Newton's method in all: enough for beer that swings 1 rad for 40 s
+_STAGES = 24
+"""s in formulas; a swing then takes some five steps a period."""
+_MOST_CORRECTIONS = 6_000
+"""Corrections of Newton's method in all: enough for beer that swings 1 rad for 40 s."""
+_MOST_CORRECTIONS_A_STEP = 12
+"""Where Newton's method converges, each correction soon squares the error: a step that needs more than
+these is too long."""
+_DIVERGED = 1e6
+"""Size of a correction, relative to the rates, from which Newton's method does not come back."""
+_MOST_GROWTH = 10.0
+"""Largest length of a step divided by that of the last one. It holds where two coefficients are enough:
+so few do not tell how long the next step may be."""
+_CAUTION = 0.95
+"""Length of the next step divided by that at which all coefficients would be needed."""
+_ANGLES = [0, 3]
+"""Rows of phi and roll in the errors of `Progress`."""
+_RATES = slice(1, 3)
+"""Rows of phi_dot and w."""
+_STATE = slice(0, 3)
+"""Rows of phi, phi_dot and w."""
 
 
-class DampedMotion(NamedTuple):
-    """A motion at some times."""
-
-    phi: np.ndarray  # [rad]
-    phi_dot: np.ndarray  # [rad/s]
-    u: np.ndarray  # [m]
-    u_dot: np.ndarray  # [m/s]
-
-
-def solve(scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float) -> DampedMotion:
-    """Return the motion of a scene with damping or drag at times [s], none of them negative.
+def solve(scene: Scene, time: np.ndarray, start: InitialState) -> tuple[SwingMotion, AxisMotion]:
+    """Return the motion of a scene with damping or drag at increasing times [s], none negative.
 
     Raises:
       ToleranceError: as `exact`.
     """
     radius = scene.can.radius
-    u0, u_dot0 = scene.initial_axis(phi0, phi_dot0)
-    if scene.incline == 0 and Launch.of(scene.oscillator, phi0, phi_dot0).stays:
+    if scene.incline == 0 and Launch.of(scene.oscillator, start.phi, start.phi_dot).stays:
         zeros = np.zeros_like(time)
-        return DampedMotion(phi0 + zeros, zeros, u0 + zeros, zeros)
-    order = np.argsort(time)
-    initial_state = np.array([reduced(phi0), phi_dot0, u_dot0 / radius - phi_dot0])
-    samples = _integrate(Equations(scene), time[order], initial_state)
-    delta_phi, delta_roll, phi_dot, slip_rate = samples[:, np.argsort(order)]
-    return DampedMotion(
-        phi=phi0 + delta_phi,
-        phi_dot=phi_dot,
-        u=u0 + radius * delta_roll,
-        u_dot=radius * (phi_dot + slip_rate),
-    )
+        return SwingMotion(start.phi + zeros, zeros), AxisMotion(start.u + zeros, zeros)
+    slip_rate = slip_rate_of(scene, start.phi_dot, start.u_dot)
+    state = np.array([reduced(start.phi), start.phi_dot, slip_rate])
+    samples = _integrate(Equations(scene), time, state)
+    swing = SwingMotion(start.phi + samples.delta_phi, samples.phi_dot)
+    roll_dot = samples.phi_dot + samples.slip_rate
+    return swing, AxisMotion(start.u + radius * samples.delta_roll, radius * roll_dot)
 
 
 # The equations and their derivatives
 
 
-class Rates(NamedTuple):
+class Accelerations(NamedTuple):
     """phi_ddot and w_dot in a state, or in several at once."""
 
-    values: np.ndarray  # phi_ddot and w_dot [rad/s^2], of shape (2, ...)
-    jacobian: np.ndarray  # their derivatives by phi, phi_dot and w, of shape (2, 3, ...)
+    values: np.ndarray
+    """phi_ddot and w_dot [rad/s^2], of shape (2, ...)."""
+    jacobian: np.ndarray
+    """Their derivatives by phi, phi_dot and w, of shape (2, 3, ...)."""
 
 
 class Equations:
@@ -111,7 +117,7 @@ class Equations:
         self._kappa = scene.drag * scene.can.radius / scene.effective_mass
         self._delta = scene.oscillator.depth / self._unit
 
-    def rates(self, phi: np.ndarray, phi_dot: np.ndarray, slip_rate: np.ndarray) -> Rates:
+    def accelerations(self, phi: np.ndarray, phi_dot: np.ndarray, slip_rate: np.ndarray) -> Accelerations:
         """Return phi_ddot and w_dot [rad/s^2], and their derivatives by phi, phi_dot and w.
 
         With c = beta cos(phi) and s = beta sin(phi) the equations are
@@ -172,7 +178,7 @@ class Equations:
         w_dot_by_phi = -c * square - s * phi_ddot - gap * phi_ddot_by_phi
         w_dot_by_phi_dot = -2 * s * phi_dot - drag_by_roll_dot - gap * phi_ddot_by_phi_dot
         w_dot_by_w = -tau_by_w - drag_by_roll_dot - gap * phi_ddot_by_w
-        return Rates(
+        return Accelerations(
             np.array([phi_ddot, w_dot]),
             np.array(
                 [
@@ -203,17 +209,22 @@ _MATRIX = legendre.legvander(_NODES[1:], _STAGES) @ _TO_INTEGRAL
 class Stages(NamedTuple):
     """What is known at the stages of a step that was solved."""
 
-    rates: np.ndarray  # phi_dot and w [rad/s], of shape (2, stages)
-    errors: np.ndarray  # by how much errors of the start change them, of the same shape
+    rates: np.ndarray
+    """phi_dot and w [rad/s], of shape (2, stages)."""
+    errors: np.ndarray
+    """By how much errors of the start change them, of the same shape."""
 
 
 class Step(NamedTuple):
     """A step that was solved, as Legendre series over its length."""
 
-    length: float  # [s]
+    length: float
+    """Its length [s]."""
     stages: Stages
-    rates: np.ndarray  # the series of phi_dot and w, of shape (1 + stages, 2)
-    angles: np.ndarray  # those of the angles by which phi and roll turn, of the same shape
+    rates: np.ndarray
+    """The series of phi_dot and w, of shape (1 + stages, 2)."""
+    angles: np.ndarray
+    """The series of the angles by which phi and roll turn, of the same shape."""
 
     def sample(self, since: np.ndarray) -> np.ndarray:
         """Return how far phi and roll turn [rad], phi_dot and w [rad/s] at times [s] within it."""
@@ -224,9 +235,12 @@ class Step(NamedTuple):
 class Trial(NamedTuple):
     """What has come of trying a step."""
 
-    corrections: int  # of Newton's method
-    next_length: float  # to try next [s]
-    step: Step | None  # None if the step must be shorter
+    corrections: int
+    """How many Newton's method made."""
+    next_length: float
+    """The length to try next [s]."""
+    step: Step | None
+    """The step that was solved; None if it must be shorter."""
 
 
 # From step to step
@@ -257,15 +271,16 @@ class Progress:
         roll_dot_errors = phi_dot_errors + slip_errors
         # The last row of the matrix integrates up to the end of the step.
         turned_errors = step.length * _MATRIX[-1] @ np.array([phi_dot_errors, roll_dot_errors]).T
-        self.errors[[0, 3]] += turned_errors
-        self.errors[1:3] = step.stages.errors[:, -1]
+        self.errors[_ANGLES] += turned_errors
+        self.errors[_RATES] = step.stages.errors[:, -1]
         angles = step.angles.sum(axis=0)  # at the end, where each P_k is 1
         self.state = np.array([reduced(self.state[0] + angles[0]), *step.stages.rates[:, -1]])
-        self.errors[:3] += np.copysign(ROUNDINGS * np.abs(self.state), self.errors[:3])
+        rounding = ROUNDINGS * np.abs(self.state)
+        self.errors[_STATE] += np.copysign(rounding, self.errors[_STATE])
         self.time += step.length
         self.turned = self.turned + angles
         self.farthest = np.maximum(self.farthest, np.abs(self.turned))
-        effect = float((np.abs(self.errors[[0, 3]]) / self.farthest).max())
+        effect = float((np.abs(self.errors[_ANGLES]) / self.farthest).max())
         if not effect <= UNCERTAIN:
             raise ToleranceError(
                 f"phi is not known later than at {self.time:.6g} s: rounding of start and scene "
@@ -274,11 +289,21 @@ class Progress:
             )
 
 
-def _integrate(equations: Equations, times: np.ndarray, state: np.ndarray) -> np.ndarray:
-    """Return how far phi and roll have turned [rad], phi_dot and w [rad/s] at sorted times.
+class Samples(NamedTuple):
+    """A motion at some times."""
 
-    The result has shape (4, times). The `state` is phi, phi_dot and w at time 0.
-    """
+    delta_phi: np.ndarray
+    """How far phi has turned [rad]."""
+    delta_roll: np.ndarray
+    """How far roll has turned [rad]."""
+    phi_dot: np.ndarray
+    """[rad/s]"""
+    slip_rate: np.ndarray
+    """[rad/s]"""
+
+
+def _integrate(equations: Equations, times: np.ndarray, state: np.ndarray) -> Samples:
+    """Return the motion at increasing times; the `state` is phi, phi_dot and w at time 0."""
     latest = float(times[-1])
     samples = np.empty((4, len(times)))
     sampled = int(np.searchsorted(times, 0.0, "right"))
@@ -307,12 +332,12 @@ def _integrate(equations: Equations, times: np.ndarray, state: np.ndarray) -> np
             samples[:2, sampled:until] += progress.turned[:, np.newaxis]
             sampled = until
         progress.advance(trial.step)
-    return samples
+    return Samples(*samples)
 
 
 def _first_length(equations: Equations, state: np.ndarray, latest: float) -> float:
-    """Return the length [s] of the first step, which is short for anything that may happen."""
-    values, jacobian = equations.rates(*state)
+    """Return a length [s] of the first step that is below every time scale of the start."""
+    values, jacobian = equations.accelerations(*state)
     fastest = abs(jacobian[1, 2]) + abs(jacobian[0, 1]) + abs(state[1])
     fastest += equations.swing_rate + math.sqrt(np.abs(values).sum())
     return 1 / fastest if fastest > 0 else latest
@@ -340,7 +365,8 @@ def _try_step(equations: Equations, progress: Progress, length: float) -> Trial:
     phi_dot, slip_rate = stages.rates
     angles = length * _TO_INTEGRAL @ np.array([phi_dot, phi_dot + slip_rate]).T
     step = Step(length, stages, series, angles)
-    return Trial(corrections, length * min(10.0, 0.95 * _STAGES / needed), step)
+    growth = min(_MOST_GROWTH, _CAUTION * _STAGES / needed)
+    return Trial(corrections, length * growth, step)
 
 
 def _share_to_corner(nodes: np.ndarray, corners: np.ndarray) -> float | None:
@@ -405,15 +431,15 @@ def _solve_stages(
     derivatives = np.empty((unknowns, unknowns))  # G
     sides = np.empty((2, _STAGES, 2))  # the right sides for the changes and for the errors
     last_size = math.inf
-    for corrections in range(1, 13):
-        values, jacobian = equations.rates(state[0] + reach @ stages[0], *stages)
+    for corrections in range(1, _MOST_CORRECTIONS_A_STEP + 1):
+        values, jacobian = equations.accelerations(state[0] + reach @ stages[0], *stages)
         for rate in range(2):  # phi_ddot, and then w_dot
             by_phi, by_phi_dot, by_w = jacobian[rate]
             rows = slice(rate * _STAGES, (rate + 1) * _STAGES)
             derivatives[rows, :_STAGES] = reach * by_phi_dot + (reach * by_phi) @ reach
             derivatives[rows, _STAGES:] = reach * by_w
         sides[..., 0] = begin + values @ reach.T - stages
-        sides[..., 1] = errors[0] * jacobian[:, 0] @ reach.T + errors[1:3, np.newaxis]
+        sides[..., 1] = errors[0] * jacobian[:, 0] @ reach.T + errors[_RATES, np.newaxis]
         try:
             solved = np.linalg.solve(identity - derivatives, sides.reshape(unknowns, 2))
         except np.linalg.LinAlgError:
@@ -424,7 +450,7 @@ def _solve_stages(
         size = float((np.abs(change).max(axis=1) / largest).max())
         if last_size < 1e-9:  # each correction squares the error, and this one left rounding
             return corrections, Stages(stages, solved[:, 1].reshape(stages.shape))
-        if not size < 1e6:
+        if not size < _DIVERGED:
             return corrections, None
         last_size = size
     return corrections, None

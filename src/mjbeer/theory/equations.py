@@ -64,6 +64,8 @@ class Forces:
 def scene_numbers(scene: Scene) -> SceneNumbers:
     """Return the numbers of a scene that the formulas need."""
     swing = scene.oscillator
+    moment = scene.load.moment
+    effective_mass = scene.effective_mass
     return SceneNumbers(
         base=swing.base,
         chord=swing.chord,
@@ -78,11 +80,22 @@ def scene_numbers(scene: Scene) -> SceneNumbers:
         load_mass=scene.load.mass,
         load_inertia=scene.load.inertia,
         offset=scene.load.offset,
+        moment=moment,
         total_mass=scene.mass,
-        effective_mass=scene.effective_mass,
+        effective_mass=effective_mass,
+        arm=moment / effective_mass,
         along=scene.gravity * math.sin(scene.incline),
         across=scene.gravity * math.cos(scene.incline),
     )
+
+
+class Accelerations(NamedTuple):
+    """Second derivatives of the coordinates in a state, or in several at once."""
+
+    u_ddot: np.ndarray
+    """[m/s^2]"""
+    phi_ddot: np.ndarray
+    """[rad/s^2]"""
 
 
 def accelerations(
@@ -90,27 +103,29 @@ def accelerations(
     phi: np.ndarray | float,
     phi_dot: np.ndarray | float,
     u_dot: np.ndarray | float,
-    slip: np.ndarray | float | None = None,
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return u_ddot [m/s^2] and phi_ddot [rad/s^2] of rolling without slipping.
+    slip_rate: np.ndarray | float | None = None,
+) -> Accelerations:
+    """Return the accelerations of rolling without slipping.
 
     The state is `phi` [rad], `phi_dot` [rad/s] and `u_dot` [m/s], of which the last matters to damping and drag alone.
-    Give the `slip` rate u_dot/a - phi_dot [rad/s] where it has more digits than the difference.
+    Give the `slip_rate` u_dot/a - phi_dot [rad/s] where it has more digits than the difference.
     """
     if scene.attachment == "frozen":
         phi_ddot = scene.oscillator.acceleration(phi, phi_dot)
-        return scene.can.radius * phi_ddot, phi_ddot
+        return Accelerations(scene.can.radius * phi_ddot, phi_ddot)
     torque = 0.0
     braking = 0.0
     if scene.dissipates:
         # The damping's torque T and the drag D act beside the forces of eqs. (46) and (47). With u_ddot eliminated by
         # eq. (46) they turn phi by T - (m b cos(phi) / M_e) (T / a + D).
-        rate = slip_rate(scene, phi_dot, u_dot) if slip is None else slip
-        damping = scene.damping_law.torque(rate)
+        if slip_rate is None:
+            slip_rate = slip_rate_of(scene, phi_dot, u_dot)
+        damping = scene.damping_law.torque(slip_rate)
         braking = damping / scene.can.radius + scene.drag * u_dot * np.abs(u_dot)
         torque = damping - scene.load.moment * np.cos(phi) / scene.effective_mass * braking
     phi_ddot = scene.oscillator.acceleration(phi, phi_dot, torque)
-    return formulas.axis_acceleration(scene_numbers(scene), phi, phi_dot, phi_ddot, braking), phi_ddot
+    u_ddot = formulas.axis_acceleration(scene_numbers(scene), phi, phi_dot, phi_ddot, braking)
+    return Accelerations(u_ddot, phi_ddot)
 
 
 class InitialState(NamedTuple):
@@ -126,26 +141,41 @@ class InitialState(NamedTuple):
     """[m/s]"""
 
 
+def initial_state(scene: Scene, phi0: float, phi_dot0: float) -> InitialState:
+    """Return the state of a start at `phi0` [rad] with `phi_dot0` [rad/s], where `Scene.initial_axis` has the axis."""
+    u0, u_dot0 = scene.initial_axis(phi0, phi_dot0)
+    return InitialState(phi0, phi_dot0, u0, u_dot0)
+
+
+class AxisMotion(NamedTuple):
+    """The motion of the axis at some times."""
+
+    u: np.ndarray
+    """[m]"""
+    u_dot: np.ndarray
+    """[m/s]"""
+
+
 def axis_motion(
     scene: Scene, time: np.ndarray, phi: np.ndarray, phi_dot: np.ndarray, start: InitialState
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return u [m] and u_dot [m/s] of rolling without damping and drag, from phi at times [s] since the `start`.
+) -> AxisMotion:
+    """Return the motion of the axis in rolling without damping and drag, from phi at times [s] since the `start`.
 
     A frozen load has u = a phi, eq. (50). With a sliding load M_e u_dot - m b cos(phi) phi_dot - (m + m_can) g
     sin(alpha) t is conserved, the integral of eq. (46).
     """
     if scene.attachment == "frozen":
-        return scene.can.radius * phi, scene.can.radius * phi_dot
+        return AxisMotion(scene.can.radius * phi, scene.can.radius * phi_dot)
     arm = scene.load.moment / scene.effective_mass
     steady = scene.downhill_weight / scene.effective_mass
     mean_u = start.u - arm * math.sin(start.phi)
     mean_u_dot = start.u_dot - arm * math.cos(start.phi) * start.phi_dot
     u = arm * np.sin(phi) + (mean_u + mean_u_dot * time + steady * time**2 / 2)
     u_dot = arm * np.cos(phi) * phi_dot + (mean_u_dot + steady * time)
-    return u, u_dot
+    return AxisMotion(u, u_dot)
 
 
-def slip_rate(scene: Scene, phi_dot: np.ndarray | float, u_dot: np.ndarray | float) -> np.ndarray | float:
+def slip_rate_of(scene: Scene, phi_dot: np.ndarray | float, u_dot: np.ndarray | float) -> np.ndarray | float:
     """Return by how much the rolling can turns faster than its load, w = u_dot/a - phi_dot [rad/s]."""
     return u_dot / scene.can.radius - phi_dot
 
@@ -159,7 +189,7 @@ def rolling_forces(
     normal = formulas.normal_force(numbers, phi, phi_dot, phi_ddot)
     if scene.attachment == "frozen":
         return Forces(normal, formulas.friction_of_frozen(numbers, phi, phi_dot, phi_ddot))
-    damping = scene.damping_law.torque(slip_rate(scene, phi_dot, u_dot))
+    damping = scene.damping_law.torque(slip_rate_of(scene, phi_dot, u_dot))
     return Forces(normal, formulas.friction_of_sliding(numbers, u_ddot, damping))
 
 

@@ -16,23 +16,44 @@ Value: TypeAlias = Any
 class SceneNumbers(NamedTuple):
     """What the formulas need to know of a scene."""
 
-    base: float  # constant part of J [kg m^2]
-    chord: float  # coefficient of sin^2(phi/2) in J [kg m^2]
-    coupling: float  # coefficient of sin^2(phi) in J [kg m^2]
-    ramp: float  # mean torque downhill [N m]
-    depth: float  # amplitude of the cosine in V [J]
-    bottom: float  # angle at which the cosine in V has its minimum
-    frozen: bool  # whether the load turns with the can
-    radius: float  # of the can, a [m]
-    can_mass: float  # m_can [kg]
-    can_inertia: float  # I_can [kg m^2]
-    load_mass: float  # m [kg]
-    load_inertia: float  # I_cm [kg m^2]
-    offset: float  # of the load's centre of mass from the axis, b [m]
-    total_mass: float  # m + m_can [kg]
-    effective_mass: float  # M_e = m + m_can + I_can/a^2 [kg]
-    along: float  # g sin(alpha), the part of gravity down the incline [m/s^2]
-    across: float  # g cos(alpha), the part of gravity into the incline [m/s^2]
+    base: float
+    """Constant part of J [kg m^2]."""
+    chord: float
+    """Coefficient of sin^2(phi/2) in J [kg m^2]."""
+    coupling: float
+    """Coefficient of sin^2(phi) in J [kg m^2]."""
+    ramp: float
+    """Mean torque downhill [N m]."""
+    depth: float
+    """Amplitude of the cosine in V [J]."""
+    bottom: float
+    """Angle at which the cosine in V has its minimum [rad]."""
+    frozen: bool
+    """Whether the load turns with the can."""
+    radius: float
+    """Radius of the can, a [m]."""
+    can_mass: float
+    """m_can [kg]."""
+    can_inertia: float
+    """I_can [kg m^2]."""
+    load_mass: float
+    """m [kg]."""
+    load_inertia: float
+    """I_cm [kg m^2]."""
+    offset: float
+    """Distance of the load's centre of mass from the axis, b [m]."""
+    moment: float
+    """m b [kg m]."""
+    total_mass: float
+    """m + m_can [kg]."""
+    effective_mass: float
+    """M_e = m + m_can + I_can/a^2 [kg]."""
+    arm: float
+    """m b / M_e [m]."""
+    along: float
+    """g sin(alpha), the part of gravity down the incline [m/s^2]."""
+    across: float
+    """g cos(alpha), the part of gravity into the incline [m/s^2]."""
 
 
 def inertia(swing: Any, phi: Value) -> Value:
@@ -45,10 +66,10 @@ def swing_energy(swing: Any, phi: Value, phi_dot: Value) -> Value:
     return inertia(swing, phi) * phi_dot**2 / 2
 
 
-def potential_drop(swing: Any, phi: Value, start: Value) -> Value:
-    """Return V(start) - V(phi) [J] without the cancellation of the plain difference."""
-    turned = phi - start
-    middle = (phi + start) / 2 - swing.bottom
+def potential_drop(swing: Any, phi: Value, from_phi: Value) -> Value:
+    """Return V(from_phi) - V(phi) [J] without the cancellation of the plain difference."""
+    turned = phi - from_phi
+    middle = (phi + from_phi) / 2 - swing.bottom
     return swing.ramp * turned - 2 * swing.depth * np.sin(middle) * np.sin(turned / 2)
 
 
@@ -62,29 +83,38 @@ def phi_acceleration(swing: Any, phi: Value, phi_dot: Value, torque: Value) -> V
     return (weight + torque - half_slope * phi_dot**2) / inertia(swing, phi)
 
 
+def sideways_pull(scene: Any, phi: Value, phi_dot: Value, phi_ddot: Value) -> Value:
+    """Return m d2(b sin(phi))/dt2 [N], with which a load that moves within the can pulls the can downhill."""
+    return scene.moment * (np.cos(phi) * phi_ddot - np.sin(phi) * phi_dot**2)
+
+
 def axis_acceleration(scene: Any, phi: Value, phi_dot: Value, phi_ddot: Value, braking: Value) -> Value:
     """Return u_ddot [m/s^2] of a can with a sliding load, against a `braking` force [N]: eq. (46)."""
-    moment = scene.load_mass * scene.offset
-    pull = moment * (np.cos(phi) * phi_ddot - np.sin(phi) * phi_dot**2)
+    pull = sideways_pull(scene, phi, phi_dot, phi_ddot)
     return (scene.total_mass * scene.along - braking + pull) / scene.effective_mass
 
 
 def normal_force(scene: Any, phi: Value, phi_dot: Value, phi_ddot: Value) -> Value:
     """Return N [N], with which the incline presses on the can; below 0 it would have to pull."""
-    moment = scene.load_mass * scene.offset
-    return scene.total_mass * scene.across + moment * (np.sin(phi) * phi_ddot + np.cos(phi) * phi_dot**2)
+    pull = scene.moment * (np.sin(phi) * phi_ddot + np.cos(phi) * phi_dot**2)  # -m d2(b cos(phi))/dt2
+    return scene.total_mass * scene.across + pull
 
 
 def friction_of_frozen(scene: Any, phi: Value, phi_dot: Value, phi_ddot: Value) -> Value:
-    """Return F [N], positive up the incline, of a can whose load turns with it: what the weight does not accelerate."""
-    moment = scene.load_mass * scene.offset
-    mass_times_acceleration = scene.total_mass * scene.radius * phi_ddot
-    pull = moment * (np.cos(phi) * phi_ddot - np.sin(phi) * phi_dot**2)
-    return scene.total_mass * scene.along - (mass_times_acceleration - pull)
+    """Return F [N], positive up the incline, of a can whose load turns with it.
+
+    It is the weight along the incline less mass times acceleration.
+    """
+    of_axis = scene.total_mass * scene.radius * phi_ddot
+    of_load = sideways_pull(scene, phi, phi_dot, phi_ddot)
+    return scene.total_mass * scene.along - (of_axis - of_load)
 
 
 def friction_of_sliding(scene: Any, u_ddot: Value, damping_torque: Value) -> Value:
-    """Return F [N], positive up the incline, of a can with a sliding load: it and the damping turn the can."""
+    """Return F [N], positive up the incline, of a can with a sliding load.
+
+    Friction and damping together turn the can: a F - T = I_can u_ddot / a.
+    """
     return scene.can_inertia / scene.radius**2 * u_ddot + damping_torque / scene.radius
 
 
@@ -99,6 +129,5 @@ def kinetic_energy(scene: Any, phi: Value, phi_dot: Value, u_dot: Value, roll_do
 
 def potential_energy(scene: Any, phi: Value, u: Value, lift: Value) -> Value:
     """Return the potential energy [J] of can and load, 0 with all mass at u = 0 on the axis."""
-    moment = scene.load_mass * scene.offset
-    load = moment * (scene.across * np.cos(phi) - scene.along * np.sin(phi))  # m b g cos(alpha + phi)
+    load = scene.moment * (scene.across * np.cos(phi) - scene.along * np.sin(phi))  # m b g cos(alpha + phi)
     return scene.total_mass * (lift * scene.across - u * scene.along) - load

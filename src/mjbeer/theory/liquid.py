@@ -35,8 +35,10 @@ NAMES: tuple[Name, ...] = get_args(Name)
 class Properties(NamedTuple):
     """The properties of a liquid on which its flow depends."""
 
-    density: float  # rho [kg/m^3]
-    viscosity: float  # kinematic, nu [m^2/s]
+    density: float
+    """rho [kg/m^3]."""
+    viscosity: float
+    """Kinematic viscosity, nu [m^2/s]."""
 
 
 LIQUIDS: dict[Name, Properties] = {
@@ -221,9 +223,12 @@ def _properties(name: str, density: float | None, viscosity: float | None) -> Pr
 class _Laws(NamedTuple):
     """The torques by which a can drags its liquid along at a slip rate W."""
 
-    layers: float  # of thin layers in a can that rolls on, divided by W^1.5 [N m s^1.5]
-    creep: float  # divided by W [N m s]
-    swing: float  # of layers in a can that swings, divided by W [N m s]
+    layers: float
+    """That of thin layers in a can that rolls on, divided by W^1.5 [N m s^1.5]."""
+    creep: float
+    """That of creep, divided by W [N m s]."""
+    swing: float
+    """That of layers in a can that swings, divided by W [N m s]."""
 
 
 def _laws(free: Scene, shape: Segment, properties: Properties) -> _Laws:
@@ -266,10 +271,14 @@ def _steady_slip_rate(free: Scene, laws: _Laws) -> float:
 class _Fit(NamedTuple):
     """A polynomial with the torque `secant` W (1 - curved + curved W/rate)."""
 
-    rate: float  # slip rate of the fit [rad/s]
-    secant: float  # torque divided by the slip rate there [N m s]
-    curved: float  # share of the quadratic term in that torque
-    law: str  # the law with the largest part
+    rate: float
+    """Slip rate of the fit [rad/s]."""
+    secant: float
+    """Torque divided by the slip rate there [N m s]."""
+    curved: float
+    """Share of the quadratic term in that torque."""
+    law: str
+    """The law with the largest part."""
 
 
 def _fit(laws: _Laws, steady_rate: float) -> _Fit:

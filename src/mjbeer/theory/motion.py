@@ -56,8 +56,21 @@ UNCERTAIN = 1e-4
 """Largest effect of rounding on phi [rad], relative beyond 1 rad.
 
 It is a hundredth of the error that a trusted run may have."""
+_STILL = 1e-30
+"""Largest distance from the equilibrium, and amplitude of a swing about it [rad], that are taken for rest.
+
+It is far below the rounding of any angle, and far above where the squares of angles underflow."""
 MOST_TURNS = 10_000
 """Turns that are followed on a slope, where each takes another time."""
+
+
+class SwingMotion(NamedTuple):
+    """A motion at some times."""
+
+    phi: np.ndarray
+    """[rad]"""
+    phi_dot: np.ndarray
+    """[rad/s]"""
 
 
 def solve(
@@ -65,15 +78,15 @@ def solve(
     time: np.ndarray,
     phi0: float,
     phi_dot0: float,
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return phi [rad] and phi_dot [rad/s] at the times `time` [s], none of them negative.
+) -> SwingMotion:
+    """Return the motion at the times `time` [s], none of them negative.
 
     Raises:
       NoLibrationError, ParameterError, ToleranceError: as `exact`.
     """
     launch = Launch.of(oscillator, phi0, phi_dot0)
     if launch.stays:
-        return np.full_like(time, phi0), np.zeros_like(time)
+        return SwingMotion(np.full_like(time, phi0), np.zeros_like(time))
     latest = float(np.max(time, initial=0.0))
     try:
         # `TravelTime` refuses what is not finite.
@@ -90,7 +103,10 @@ def solve(
             f"motion too long: rounding may change phi by more than {UNCERTAIN:g} rad (relative "
             f"beyond 1 rad) until {latest:g} s"
         )
-    return phi0 + launch.direction * course.delta_phi, launch.direction * course.phi_dot
+    return SwingMotion(
+        phi=phi0 + launch.direction * course.delta_phi,
+        phi_dot=launch.direction * course.phi_dot,
+    )
 
 
 def period(oscillator: Oscillator, amplitude: float) -> float:
@@ -133,13 +149,20 @@ class Launch:
     keep their digits beside them.
     """
 
-    oscillator: Oscillator  # the reflected one where `direction` is -1
-    direction: int  # 1, or -1 if phi and phi_dot have the opposite sign here
-    phi: float  # [rad]
-    phi_dot: float  # [rad/s]
-    kinetic: float  # kinetic energy [J]
-    past_crest: float  # how far phi is past the crest of its turn [rad]
-    past_rest: float  # how far phi is past the rest of its well [rad]
+    oscillator: Oscillator
+    """The reflected one where `direction` is -1."""
+    direction: int
+    """1, or -1 if phi and phi_dot have the opposite sign here."""
+    phi: float
+    """[rad]"""
+    phi_dot: float
+    """[rad/s]"""
+    kinetic: float
+    """Kinetic energy [J]."""
+    past_crest: float
+    """How far phi is past the crest of its turn [rad]."""
+    past_rest: float
+    """How far phi is past the rest of its well [rad]."""
 
     @classmethod
     def of(cls, oscillator: Oscillator, phi: float, phi_dot: float) -> "Launch":
@@ -153,8 +176,8 @@ class Launch:
         # J is taken at phi itself: where it has a narrow minimum, rounding of the other two angles
         # would change it.
         kinetic = float(oscillator.kinetic_energy(phi, phi_dot))
-        past_crest, past_rest = oscillator.potential.distances(phi)
-        return cls(oscillator, direction, phi, phi_dot, kinetic, past_crest, past_rest)
+        distances = oscillator.potential.distances(phi)
+        return cls(oscillator, direction, phi, phi_dot, kinetic, *distances)
 
     @property
     def potential(self) -> Potential:
@@ -187,7 +210,7 @@ class Launch:
         if not self.swings:
             return False
         amplitude = math.sqrt(self.kinetic / self.potential.curvature)
-        return max(abs(self.past_rest), amplitude) <= 1e-30
+        return max(abs(self.past_rest), amplitude) <= _STILL
 
     @property
     def stays(self) -> bool:
@@ -212,17 +235,23 @@ class Leg(NamedTuple):
     """A part of a motion."""
 
     path: "Arc | Turns"
-    turn: int  # the number of its turn, or of its most uphill one; that of the start is 0
-    margin: float  # the least energy by which the motion passes, or misses, a crest there [J]
+    turn: int
+    """The number of its turn, or of its most uphill one; that of the start is 0."""
+    margin: float
+    """The least energy by which the motion passes, or misses, a crest there [J]."""
 
 
 class Course(NamedTuple):
     """Where a motion is at some times."""
 
-    delta_phi: np.ndarray  # how far phi has turned since the start [rad]
-    phi_dot: np.ndarray  # [rad/s]
-    margin: float  # the least energy by which the motion passes, or misses, a crest [J]
-    end: float  # the end of the last leg, counted from the beginning of the first [s]
+    delta_phi: np.ndarray
+    """How far phi has turned since the start [rad]."""
+    phi_dot: np.ndarray
+    """[rad/s]"""
+    margin: float
+    """The least energy by which the motion passes, or misses, a crest [J]."""
+    end: float
+    """The end of the last leg, counted from the beginning of the first [s]."""
 
 
 def _follow(launch: Launch, time: np.ndarray) -> Course:
@@ -336,7 +365,7 @@ def _legs_on_slope(launch: Launch) -> Iterator[Leg]:
     climbed = np.array([])  # E - V at the crest of each turn that is climbed
     if launch.phi_dot < 0:
         climbed = energy - drop * np.arange(MOST_TURNS)
-        climbed = climbed[climbed > potential.highest]
+        climbed = climbed[climbed > potential.edge_above_crest]
     for energies in _in_batches(climbed):
         turn -= len(energies)
         energy_ahead = float(energies[-1])
@@ -344,7 +373,7 @@ def _legs_on_slope(launch: Launch) -> Iterator[Leg]:
         yield Leg(Turns(launch.oscillator, energies[::-1], uphill=True), turn + 1, energy_ahead)
 
     # Round, in an arc.
-    if energy <= potential.highest:
+    if energy <= potential.edge_above_crest:
         yield Leg(_arc_on_slope(launch, energy), turn, min(abs(energy), energy_ahead))
         turn += 1
         energy = energy_ahead
@@ -393,9 +422,12 @@ def _arc_on_slope(launch: Launch, energy: float) -> "Arc":
 class Place(NamedTuple):
     """Where on a path a motion is at some times."""
 
-    passage: np.ndarray  # in which turn of the path; the most uphill one is 0
-    angle: np.ndarray  # past the crest of that turn, or past the rest in a swing [rad]
-    phi_dot: np.ndarray  # [rad/s]
+    passage: np.ndarray
+    """The turn of the path in which it is; the most uphill one is 0."""
+    angle: np.ndarray
+    """How far it is past the crest of that turn, or past the rest in a swing [rad]."""
+    phi_dot: np.ndarray
+    """[rad/s]"""
 
 
 class Arc:
@@ -445,7 +477,8 @@ class Arc:
         past = launch.past_rest
         if self._landmark == "crest":
             past = launch.past_crest
-            # The start may be counted from the crest ahead, and the path from the one behind.
+            # The start may be counted from the crest ahead, and the path from the one behind: `Launch`
+            # measures from the nearest crest; one turn further back is that of this arc.
             if past < 0 < self._turning_point:
                 past += math.tau
         # The kinetic energy is E - V = s^2 |mean torque|.
@@ -517,13 +550,13 @@ def _rounding_delay(launch: Launch, margin: float, latest: float) -> float:
     if potential.curvature == 0:
         # There is no barrier. The torque at the crest is the difference of ramp and depth, which
         # magnifies their rounding by depth / excess. Squared, this is on the safe side.
-        ratio = potential.balanced / potential.excess if potential.excess > 0 else math.inf
+        ratio = potential.held_torque / potential.excess if potential.excess > 0 else math.inf
         return ROUNDINGS * ratio**2 * latest
 
     # If ramp / depth has a relative error, that of the curvature, sqrt(depth^2 - ramp^2), is
     # steep^2 times as large, and the lean of the crest, asin(ramp / depth), is off by steep times
     # the error.
-    steep = potential.balanced / potential.curvature
+    steep = potential.held_torque / potential.curvature
     curvature_error = ROUNDINGS * steep**2  # relative
 
     # The crest may be so far from where it is taken to be. On level ground it is at an odd multiple

@@ -11,11 +11,17 @@ from mjbeer.theory.equations import Coordinates, InitialState, select_samples
 from mjbeer.theory.liquid import centrifugal_ratio, lump_warning
 from mjbeer.theory.scene import Scene
 
-# The largest values that are trusted.
-ERROR = 1e-2  # estimated error of phi and u/a [rad], relative beyond 1 rad: half a degree
-SLIP = 1e-3  # in radii: a milliradian of roll angle
-LIFT = 1e-3  # gap or penetration between can and incline, in radii
-_SMALL_SWING = 1e-2  # of the depth m g b of the well: a drift is compared with no less than a swing of 0.14 rad
+ERROR = 1e-2
+"""Largest estimated error of phi and u/a that is trusted [rad], relative beyond 1 rad: half a degree."""
+SLIP = 1e-3
+"""Largest slip that is trusted, in radii: a milliradian of roll angle."""
+LIFT = 1e-3
+"""Largest gap or penetration between can and incline that is trusted, in radii."""
+_SMALL_SWING = 1e-2
+"""Least energy that a drift is compared with, in units of the depth m g b of the well: that of a swing of 0.14 rad."""
+_LEAST_SHARE = 1e-11
+"""Least energy that a change of all energy is compared with, relative to the largest kinetic energy of all that moves:
+even a drift of a thousandth of it, 1e-14, is 45 times the rounding of the energy."""
 
 
 @dataclass
@@ -33,8 +39,6 @@ class Record:
     """Largest angle by which the load has turned from its start [rad]."""
     largest_distance: float = 0.0
     """Largest distance of the axis from its start [m]."""
-    angle_covered: float = 0.0
-    """Angle that the load has covered, forth and back [rad]."""
     largest_rate: float = 0.0
     """Largest rate of the load, |phi_dot| [rad/s]."""
     swing_energy: float = 0.0
@@ -43,10 +47,9 @@ class Record:
     """Largest kinetic energy of all that moves [J]."""
     energy_change: float = 0.0
     """Largest change of the total energy [J]; damping and drag change it, too."""
-    swing_change: float = 0.0
-    """Largest change of the swing's energy J phi_dot^2 / 2 + V [J]; 0 with damping or drag."""
     swing_drift: float = 0.0
-    """Largest integral of that change over the angle covered [J rad]; 0 with damping or drag."""
+    """Largest integral of the change of the swing's energy J phi_dot^2 / 2 + V over the angle that the load covers,
+    forth and back [J rad]; 0 with damping or drag."""
     axis_drift: float = 0.0
     """Largest distance of the axis from where its momentum has it [m]; 0 with damping or drag."""
     largest_slip_rate: float = 0.0
@@ -75,8 +78,7 @@ class Record:
         that moves.
         """
         balanced = self.scene.load.offset == 0
-        # A thousandth of 1e-11 of the kinetic energy is still many times its rounding.
-        share = 1.0 if balanced else 1e-11
+        share = 1.0 if balanced else _LEAST_SHARE
         return self.energy_change / max(self._least_swing, share * self.kinetic_energy)
 
     @property
@@ -86,14 +88,6 @@ class Record:
         A relative error of the energy is about that of the angle covered meanwhile. With damping or drag there is none.
         """
         return self.swing_drift / self._least_swing / max(1.0, self.largest_turn)
-
-    @property
-    def swing_error_at_most(self) -> float:
-        """Return `swing_error` as it would be if the largest change had been there all the time.
-
-        A step that misses a brief event may bring a change that the next one takes away, and leave the phase wrong.
-        """
-        return self.swing_change / self._least_swing * self.angle_covered / max(1.0, self.largest_turn)
 
     @property
     def axis_error(self) -> float:
@@ -111,7 +105,6 @@ class RecordMaker:
     def __init__(self, scene: Scene, friction: float = math.inf) -> None:
         """Begin the record of a can that slips where rolling needs more than a coefficient of `friction`."""
         self.record = Record(scene, friction)
-        self._scene = scene
         self._first: Coordinates | None = None
         self._last_phi = math.nan
         self._initial_energy = math.nan
@@ -126,15 +119,16 @@ class RecordMaker:
     def add_states(self, motion: Coordinates) -> None:
         """Add the next piece of the motion to everything except what rests on forces."""
         record = self.record
-        kinetic = equations.kinetic_energy(self._scene, motion)
-        energy = kinetic + equations.potential_energy(self._scene, motion)
+        kinetic = equations.kinetic_energy(record.scene, motion)
+        energy = kinetic + equations.potential_energy(record.scene, motion)
         if self._first is None:
             self._first = select_samples(motion, [0])
             self._last_phi = float(motion.phi[0])
             self._initial_energy = float(energy[0])
         first = self._first
-        rolled = self._scene.can.radius * (motion.roll - first.roll)
-        swing = self._scene.oscillator.kinetic_energy(motion.phi, motion.phi_dot)
+        rolled = record.scene.can.radius * (motion.roll - first.roll)
+        oscillator = record.scene.oscillator
+        swing = oscillator.kinetic_energy(motion.phi, motion.phi_dot)
         covered = np.abs(np.diff(motion.phi, prepend=self._last_phi))
         self._last_phi = float(motion.phi[-1])
         record.slip = _largest(record.slip, motion.u - first.u - rolled)
@@ -142,11 +136,10 @@ class RecordMaker:
         record.largest_turn = _largest(record.largest_turn, motion.phi - first.phi)
         record.largest_distance = _largest(record.largest_distance, motion.u - first.u)
         record.largest_rate = _largest(record.largest_rate, motion.phi_dot)
-        record.angle_covered += float(covered.sum())
         record.kinetic_energy = _largest(record.kinetic_energy, kinetic)
         record.swing_energy = _largest(record.swing_energy, swing)
         record.energy_change = _largest(record.energy_change, energy - self._initial_energy)
-        if self._scene.dissipates:
+        if record.scene.dissipates:
             self._add_slip(motion)
         else:
             self._add_conserved(motion, swing, covered)
@@ -154,10 +147,10 @@ class RecordMaker:
     def _add_slip(self, motion: Coordinates) -> None:
         """Add how can and load slip past each other with damping or drag."""
         record = self.record
-        slip_rate = equations.slip_rate(self._scene, motion.phi_dot, motion.u_dot)
+        slip_rate = equations.slip_rate_of(record.scene, motion.phi_dot, motion.u_dot)
         record.largest_slip_rate = _largest(record.largest_slip_rate, slip_rate)
-        if self._scene.damping_law.valid_rates is not None and record.no_lump_at == math.inf:
-            spread = np.flatnonzero(centrifugal_ratio(self._scene, motion.u_dot) > 1)
+        if record.scene.damping_law.valid_rates is not None and record.no_lump_at == math.inf:
+            spread = np.flatnonzero(centrifugal_ratio(record.scene, motion.u_dot) > 1)
             if len(spread) > 0:
                 record.no_lump_at = float(motion.time[spread[0]])
 
@@ -166,23 +159,22 @@ class RecordMaker:
         record = self.record
         first = self._first
         assert first is not None
-        oscillator = self._scene.oscillator
+        oscillator = record.scene.oscillator
         initial_swing = oscillator.kinetic_energy(first.phi, first.phi_dot)
         change = swing - (initial_swing + oscillator.drop(motion.phi, first.phi))
         drift = self._swing_drift + np.cumsum(change * covered)
         self._swing_drift = float(drift[-1])
-        record.swing_change = _largest(record.swing_change, change)
         record.swing_drift = _largest(record.swing_drift, drift)
-        if self._scene.attachment == "sliding":
+        if record.scene.attachment == "sliding":
             start = InitialState(float(first.phi[0]), float(first.phi_dot[0]), float(first.u[0]), float(first.u_dot[0]))
             since_start = motion.time - first.time
-            expected_u, _ = equations.axis_motion(self._scene, since_start, motion.phi, motion.phi_dot, start)
-            record.axis_drift = _largest(record.axis_drift, motion.u - expected_u)
+            expected = equations.axis_motion(record.scene, since_start, motion.phi, motion.phi_dot, start)
+            record.axis_drift = _largest(record.axis_drift, motion.u - expected.u)
 
     def add_forces(self, time: np.ndarray, phi: np.ndarray, phi_dot: np.ndarray, u_dot: np.ndarray) -> None:
         """Add the forces that rolling needs at times [s] in the states there; `u_dot` matters to damping and drag."""
         record = self.record
-        forces = equations.rolling_forces(self._scene, phi, phi_dot, u_dot)
+        forces = equations.rolling_forces(record.scene, phi, phi_dot, u_dot)
         record.lowest_normal = float(np.minimum(record.lowest_normal, forces.normal.min()))
         record.needed_friction = _largest(record.needed_friction, forces.needed_friction)
         if math.isfinite(record.rolling_ends_at):
@@ -222,50 +214,54 @@ class Diagnosis(NamedTuple):
     rolling: tuple[str, ...]
     """Where a can did not, or could not, roll without slipping."""
     liquid: tuple[str, ...]
-    """Where a liquid is no lump, or slips at rates that its damping is not for."""
+    """Where a liquid is no lump, or slips faster or slower than its damping law allows."""
 
 
 def diagnose(record: Record, rolling: str, friction: float = math.inf) -> Diagnosis:
     """Return what a record says against its motion; a contact slips at its coefficient of `friction`."""
     return Diagnosis(
-        tuple(failed_checks(record, rolling)), tuple(rolling_failures(record, rolling, friction)), _no_lump(record)
+        solver=failed_checks(record, rolling),
+        rolling=rolling_failures(record, rolling, friction),
+        liquid=_no_lump(record),
     )
 
 
-def failed_checks(record: Record, rolling: str) -> list[str]:
+def failed_checks(record: Record, rolling: str) -> tuple[str, ...]:
     """Return the reasons to doubt that the equations of a motion were solved, one sentence for each.
 
     In "contact" the can may slip and part, as `rolling_failures` says, and then friction and impacts take energy.
     """
     reasons = _slip_reasons(record)
     if rolling == "contact" and reasons:
-        return []
+        return ()
     error = float(np.maximum(record.swing_error, record.axis_error))  # NaN if one is
-    if not error <= ERROR:
-        reasons.append(
-            f"energy or momentum drift like an error of {error:.3g} rad of phi or u/a (trusted up to {ERROR:g}): "
-            "take a smaller timestep or a better integrator"
-        )
-    return reasons
+    if error <= ERROR:
+        return reasons
+    reason = (
+        f"energy or momentum drift like an error of {error:.3g} rad of phi or u/a (trusted up to {ERROR:g}): "
+        "take a smaller timestep or a better integrator"
+    )
+    return (*reasons, reason)
 
 
-def rolling_failures(record: Record, rolling: str, friction: float = math.inf) -> list[str]:
+def rolling_failures(record: Record, rolling: str, friction: float = math.inf) -> tuple[str, ...]:
     """Return where a can did not, or could not, roll without slipping, one sentence for each.
 
     In "contact" it slips at its coefficient of `friction`, and leaves the incline. Else a real can does so where N < 0.
     """
     if rolling != "contact":
+        if not math.isfinite(record.rolling_ends_at):
+            return ()
         at = f"from t = {record.rolling_ends_at:.6g} s"
-        pulls = f"{at} the incline would have to pull at the can (N < 0): a real one leaves it there"
-        return [pulls] if math.isfinite(record.rolling_ends_at) else []
+        return (f"{at} the incline would have to pull at the can (N < 0): a real one leaves it there",)
     reasons = _slip_reasons(record)
-    if not record.needed_friction <= friction:
-        needed = f"a friction coefficient of {record.needed_friction:.3g}"
-        reasons.append(f"rolling needs {needed}, and the contact has {friction:g}: it slides")
-    return reasons
+    if record.needed_friction <= friction:
+        return reasons
+    needed = f"a friction coefficient of {record.needed_friction:.3g}"
+    return (*reasons, f"rolling needs {needed}, and the contact has {friction:g}: it slides")
 
 
-def _slip_reasons(record: Record) -> list[str]:
+def _slip_reasons(record: Record) -> tuple[str, ...]:
     reasons = []
     slip = record.slip / record.scene.can.radius
     lift = record.lift / record.scene.can.radius
@@ -273,11 +269,11 @@ def _slip_reasons(record: Record) -> list[str]:
         reasons.append(f"the can slips by {slip:.3g} radii (trusted up to {SLIP:g})")
     if not lift <= LIFT:
         reasons.append(f"the can parts from the incline, or sinks in, by {lift:.3g} radii (trusted up to {LIFT:g})")
-    return reasons
+    return tuple(reasons)
 
 
 def _no_lump(record: Record) -> tuple[str, ...]:
-    """Return why the liquid of a scene is no lump in this motion, in one sentence, if it is none."""
+    """Return, in one sentence, why the liquid does not move as a lump; empty if it does."""
     if record.scene.damping_law.valid_rates is None:
         return ()
     spread = f"from t = {record.no_lump_at:.6g} s on" if record.no_lump_at < math.inf else ""

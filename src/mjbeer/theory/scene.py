@@ -19,11 +19,14 @@ from mjbeer.theory.oscillator import Oscillator
 Parameters = ParamSpec("Parameters")
 Attachment = Literal["sliding", "frozen"]
 ATTACHMENTS: tuple[Attachment, ...] = get_args(Attachment)
-# What scenes and motions have unless told otherwise.
-INCLINE = math.radians(10)  # [rad], as in the paper's footnote 8
-DURATION = 2.0  # [s]
-PHI0 = math.radians(60)  # at the start [rad]
-GRAVITY = 9.81  # [m/s^2]; the paper's footnote 8 has 9.8
+INCLINE = math.radians(10)
+"""Slope of the incline [rad] unless another is given, as in the paper's footnote 8."""
+DURATION = 2.0
+"""Length of a motion [s] unless another is given."""
+PHI0 = math.radians(60)
+"""phi at the start [rad] unless another is given."""
+GRAVITY = 9.81
+"""Gravity [m/s^2] unless another is given; the paper's footnote 8 has 9.8."""
 
 
 class Call(NamedTuple):
@@ -131,7 +134,8 @@ class Scene:
                 f"got damping={damping} and drag={drag}"
             )
         # A slower decay cannot be observed. At phi = pi the load resists least.
-        slowest, fastest = 1e-12, 1e9  # [1/s], at 1 rad/s
+        slowest = 1e-12  # [1/s], at 1 rad/s
+        fastest = 1e9
         of_damping = float(relaxation_rate(self, math.pi, 1.0))
         of_drag = 2 * self.drag * self.can.radius / self.effective_mass
         require.within("rate of damping", of_damping, slowest, fastest, "1/s", zero=True)

@@ -42,9 +42,12 @@ class Reaction(NamedTuple):
 class _Pendulums(NamedTuple):
     """The pendulums that stand for the first modes; every array has shape (count,)."""
 
-    mass: np.ndarray  # m_n [kg]
-    bob: np.ndarray  # height z_n above the centroid of the liquid at rest [m]
-    length: np.ndarray  # L_n [m]
+    mass: np.ndarray
+    """m_n [kg]."""
+    bob: np.ndarray
+    """Height z_n above the centroid of the liquid at rest [m]."""
+    length: np.ndarray
+    """L_n [m]."""
 
     @property
     def pivot(self) -> np.ndarray:

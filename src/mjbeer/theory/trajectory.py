@@ -16,9 +16,9 @@ from mjbeer.theory import damped_motion, equations, motion
 from mjbeer.theory.equations import (
     Coordinates,
     Forces,
-    InitialState,
     accelerations,
     axis_motion,
+    initial_state,
     rolling_forces,
     select_samples,
 )
@@ -80,7 +80,7 @@ class Trajectory(Coordinates):
     @property
     def distance(self) -> np.ndarray:
         """Return how far the axis has come down the incline since time 0 [m], at each sample."""
-        return self.u - self.scene.initial_axis(self.phi0, self.phi_dot0)[0]
+        return self.u - initial_state(self.scene, self.phi0, self.phi_dot0).u
 
     @property
     def slip(self) -> np.ndarray:
@@ -119,7 +119,7 @@ class Trajectory(Coordinates):
 
     @property
     def liquid_warnings(self) -> tuple[str, ...]:
-        """Return where a liquid is no lump, or slips at rates that its damping is not for, in one sentence."""
+        """Return where a liquid is no lump, or slips faster or slower than its damping law allows."""
         return self.diagnosis.liquid
 
     @property
@@ -138,22 +138,24 @@ class Trajectory(Coordinates):
         Raises:
           NoEquilibriumError: if the load has no equilibrium to swing about.
           NoLibrationError: if the damping lets it creep back without a swing.
-          MjbeerError: if less than three turning points of swings of 1e-5 rad are in it, or samples are too far apart.
+          MjbeerError: if fewer than three turning points of swings of 1e-5 rad are in it, or samples are too far apart.
         """
         scene = self.scene
         # What is slower may be rounding, or the ringing of a contact.
         fast = np.flatnonzero(np.abs(self.phi_dot) > 1e-5 * scene.frequency())
         swing = select_samples(self, slice(int(np.max(fast, initial=-1)) + 1))
-        time, phi, rate = swing.time, swing.phi, swing.phi_dot
-        phi_ddot = accelerations(scene, phi, rate, swing.u_dot)[1]
-        turns = _turning_times(time, rate, phi_ddot)
-        if len(turns) < 3:
-            raise MjbeerError(f"no frequency: a swing of 1e-5 rad turns {len(turns)} times here, and 3 are needed")
+        phi_ddot = accelerations(scene, swing.phi, swing.phi_dot, swing.u_dot).phi_ddot
+        turning_times = _sign_changes(swing.time, swing.phi_dot, phi_ddot)
+        if len(turning_times) < 3:
+            raise MjbeerError(
+                f"no frequency: a swing of 1e-5 rad turns {len(turning_times)} times here, and 3 are needed"
+            )
         # A small swing without damping is the fastest one.
-        if not np.diff(time).max() * scene.oscillator.frequency() <= math.tau / 3:
+        if not np.diff(swing.time).max() * scene.oscillator.frequency() <= math.tau / 3:
             raise MjbeerError("no frequency: the samples are too far apart; at least three a period are needed")
-        periods = (len(turns) - 1) // 2  # only whole periods, as the two halves of a swing differ on an incline
-        return float(math.tau * periods / (turns[2 * periods] - turns[0]))
+        # Only whole periods, as the two halves of a swing differ on an incline.
+        periods = (len(turning_times) - 1) // 2
+        return float(math.tau * periods / (turning_times[2 * periods] - turning_times[0]))
 
     def plot(self, *names: str, theory: bool = False) -> Any:
         """Plot quantities, as "phi", "u" and "energy", in a new figure, and return the matplotlib axes of each.
@@ -225,14 +227,14 @@ def exact(scene: Scene, time: ArrayLike, phi0: float, phi_dot0: float = 0.0) -> 
 def exact_motion(scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float) -> Trajectory:
     """Return the motion of `exact`, without a warning about the start."""
     radius = scene.can.radius
-    u0, u_dot0 = scene.initial_axis(phi0, phi_dot0)
+    start = initial_state(scene, phi0, phi_dot0)
     try:
         with np.errstate(over="raise", invalid="raise", divide="raise"):
             if scene.dissipates:
-                phi, phi_dot, u, u_dot = damped_motion.solve(scene, time, phi0, phi_dot0)
+                swing, axis = damped_motion.solve(scene, time, start)
             else:
-                phi, phi_dot = motion.solve(scene.oscillator, time, phi0, phi_dot0)
-                u, u_dot = axis_motion(scene, time, phi, phi_dot, InitialState(phi0, phi_dot0, u0, u_dot0))
+                swing = motion.solve(scene.oscillator, time, phi0, phi_dot0)
+                axis = axis_motion(scene, time, swing.phi, swing.phi_dot, start)
     except ArithmeticError as error:
         raise ParameterError(
             f"this motion is beyond double precision ({error}), got phi0 = {phi0!r} rad, phi_dot0 = {phi_dot0!r} rad/s "
@@ -244,12 +246,12 @@ def exact_motion(scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float) -
         phi0=phi0,
         phi_dot0=phi_dot0,
         time=time,
-        u=u,
-        phi=phi,
-        u_dot=u_dot,
-        phi_dot=phi_dot,
-        roll=u / radius,
-        roll_dot=u_dot / radius,
+        u=axis.u,
+        phi=swing.phi,
+        u_dot=axis.u_dot,
+        phi_dot=swing.phi_dot,
+        roll=axis.u / radius,
+        roll_dot=axis.u_dot / radius,
         lift=still,
         lift_dot=still,
     )
@@ -257,9 +259,10 @@ def exact_motion(scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float) -
 
 def csv(motion: Trajectory) -> str:
     """Return a motion as CSV, as `Trajectory.to_csv` writes it."""
-    table, text = _columns(motion), io.StringIO()
-    rows, header = np.column_stack(list(table.values())), ",".join(table)
-    np.savetxt(text, rows, fmt="%.17g", delimiter=",", header=header, comments="")
+    table = _columns(motion)
+    rows = np.column_stack(list(table.values()))
+    text = io.StringIO()
+    np.savetxt(text, rows, fmt="%.17g", delimiter=",", header=",".join(table), comments="")
     return text.getvalue()
 
 
@@ -279,17 +282,29 @@ def largest_error(
     With phi [rad] and u [m] at the `start`, each distance is divided by the largest angle that `truth`, in order of
     time, has turned from there so far, where that exceeds 1 rad: this is the error that a tolerance bounds.
     """
-    angles = np.array([motion.phi, motion.u / radius])
-    true_angles = np.array([truth.phi, truth.u / radius])
+    angles = np.column_stack([motion.phi, motion.u / radius])
+    true_angles = np.column_stack([truth.phi, truth.u / radius])
+    if start is None:
+        return largest_angle_error(angles, true_angles)
+    phi0, u0 = start
+    return largest_angle_error(angles, true_angles, np.array([phi0, u0 / radius]))
+
+
+def largest_angle_error(angles: np.ndarray, true_angles: np.ndarray, start_angles: np.ndarray | None = None) -> float:
+    """Return the largest distance [rad] of angles from the true ones, both of shape (samples, angles).
+
+    With `start_angles`, of shape (angles,), each distance is divided by the largest angle turned from there so far,
+    where that exceeds 1 rad. The distance from what is no number is infinite.
+    """
     apart = np.abs(angles - true_angles)
-    if start is not None:
-        phi0, u0 = start
-        turned = np.abs(true_angles - np.array([[phi0], [u0 / radius]]))
-        apart /= np.maximum(1, np.maximum.accumulate(turned, axis=1))
-    return float(apart.max())
+    if start_angles is not None:
+        turned = np.abs(true_angles - start_angles)
+        apart /= np.maximum(1.0, np.maximum.accumulate(turned))
+    largest = float(apart.max())
+    return largest if largest < math.inf else math.inf
 
 
-def _turning_times(time: np.ndarray, rate: np.ndarray, change: np.ndarray) -> np.ndarray:
+def _sign_changes(time: np.ndarray, rate: np.ndarray, change: np.ndarray) -> np.ndarray:
     """Return the times [s] at which `rate` changes sign; in between it is the cubic with its values and derivatives."""
     before = np.flatnonzero(np.diff(rate > 0))
     step = np.diff(time)[before]

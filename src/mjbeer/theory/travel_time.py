@@ -26,22 +26,39 @@ from numpy.polynomial import chebyshev
 from mjbeer.exceptions import ToleranceError
 
 EPS = 2.0**-52
+"""Distance from 1 to the next double."""
 
 _DEGREE = 24
+"""Degree of the series on a panel."""
 _NODES = chebyshev.chebpts1(_DEGREE + 1)
 _TO_SERIES = np.linalg.inv(chebyshev.chebvander(_NODES, _DEGREE)).T
 """Values at the nodes, times this matrix, are the coefficients of the series through them."""
 _TO_INTEGRAL = chebyshev.chebint(np.eye(_DEGREE + 1), lbnd=-1).T
 """Coefficients of a series, times this matrix, are those of its integral over x from -1 on."""
-_MOST_PANELS = 5000  # an ordinary path takes 10 panels, and one that hardly passes a barrier 100
+_MOST_PANELS = 5000
+"""An ordinary path takes 10 panels, and one that hardly passes a barrier 100."""
+_TAIL = slice(-3, None)
+"""The last three of the 25 coefficients, which tell whether a series is resolved.
+
+Every other one vanishes for an even or odd dt/dpsi, but never all three."""
+_BEFORE_TAIL = slice(-12, -3)
+"""The nine before them. The tail is noise if it has not fallen to `_FALL` of these."""
+_FALL = 0.1
+_RESOLVED = 3e-15
+"""Largest tail of a resolved series, relative to its largest coefficient: 13.5 eps, found in trials."""
+_PANEL_NOISE = 16 * EPS
+"""The same of a tail that is noise, if psi had no more rounding than the panel is wide; found in trials."""
 
 
 class Panels(NamedTuple):
     """The panels of a path, in the order of psi."""
 
-    lows: np.ndarray  # psi at their beginning, of shape (panels,)
-    halves: np.ndarray  # half their width, of shape (panels,)
-    values: np.ndarray  # dt/dpsi [s] at their nodes, of shape (panels, passages, nodes)
+    lows: np.ndarray
+    """psi at their beginning, of shape (panels,)."""
+    halves: np.ndarray
+    """Half their width, of shape (panels,)."""
+    values: np.ndarray
+    """dt/dpsi [s] at their nodes, of shape (panels, passages, nodes)."""
 
 
 class TravelTime:
@@ -128,13 +145,13 @@ def _are_resolved(values: np.ndarray, lows: np.ndarray, halves: np.ndarray) -> n
     """Return which panels reproduce `values` by a series, as well as rounding of psi lets them."""
     coefficients = np.abs(values @ _TO_SERIES)
     size = coefficients.max(axis=1)
-    tail = coefficients[:, -3:].max(axis=1)
+    tail = coefficients[:, _TAIL].max(axis=1)
     # Noise shows as small coefficients that have stopped falling. Rounding of psi changes dt/dpsi
     # by some eps as often as the panel is narrower than psi, for panels are as wide as dt/dpsi
     # takes to change by itself.
-    has_stalled = tail >= 0.1 * coefficients[:, -12:-3].max(axis=1)
-    noise = 16 * EPS * (1 + (np.abs(lows) + halves) / halves)
-    return (tail <= 3e-15 * size) | (has_stalled & (tail <= noise * size))
+    has_stalled = tail >= _FALL * coefficients[:, _BEFORE_TAIL].max(axis=1)
+    noise = _PANEL_NOISE * (1 + (np.abs(lows) + halves) / halves)
+    return (tail <= _RESOLVED * size) | (has_stalled & (tail <= noise * size))
 
 
 def _invert(series: np.ndarray, target: np.ndarray, guess: np.ndarray) -> np.ndarray:
