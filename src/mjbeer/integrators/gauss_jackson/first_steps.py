@@ -129,7 +129,10 @@ def find_first_steps(dynamics, sundman, start, timestep, history):
 
 @compiled
 def _improve(dynamics, sundman, start, timestep, history, by_law):
-    """Improve the first accelerations, by the law or by MuJoCo; return the largest change over the largest of them."""
+    """Improve the first accelerations, by the law or by MuJoCo.
+
+    Return the largest change, divided by the largest of them.
+    """
     optimize_for_size()
     change = 0.0
     largest = 1e-300

@@ -134,7 +134,7 @@ def find(sundman, curve, step, since):
     for _ in range(_ATTEMPTS):
         node = node_at(sundman, curve, s_share)
         time_left = since - duration(sundman, curve, s_share)
-        # Newton's step in s, and a second term for `growth`, by which share dt/ds grows in a second of s.
+        # Newton's step in s, and a second term for the `growth` of dt/ds, its derivative in s divided by itself.
         growth = sundman.varying * sundman.multiple * math.sin(2 * sundman.multiple * node.phi)
         growth *= node.rate / (2 * node.dt_ds * node.dt_ds)
         ahead = time_left / node.dt_ds
