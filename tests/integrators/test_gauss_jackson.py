@@ -20,7 +20,7 @@ from mjbeer.integrators.gauss_jackson import (
     sundman_time,
 )
 from mjbeer.integrators.gauss_jackson.method import BLOCK
-from mjbeer.integrators.gauss_jackson.weights import COUNT, LAG, POSITION, VELOCITY, weights
+from mjbeer.integrators.gauss_jackson.weights import COUNT, LAG, POSITION, VELOCITY, weights_at
 from mjbeer.model.build import build
 from mjbeer.model.joints import initial_state, to_coordinates
 from mjbeer.simulation import methods
@@ -39,7 +39,7 @@ def test_weights_are_exact_for_polynomials_of_twelfth_degree(power: int, back: i
 
     The step is 1, v = t^(n+1)/(n+1), and q = t^(n+2)/((n+1)(n+2)).
     """
-    chosen = weights(power, back)
+    chosen = weights_at(power, back)
 
     def formula(last: int) -> float:
         """The sum with weights if the last acceleration is at t = `last`."""
@@ -214,10 +214,18 @@ def test_rounding_does_not_add_up() -> None:
 
 
 @pytest.mark.parametrize("timestep", [0.05, 0.1, 0.2])
-def test_a_timestep_that_is_too_large_is_seen(timestep: float) -> None:
-    """Rolling down turns faster and faster, and the method becomes unstable in the middle of the run."""
-    with pytest.raises(DivergenceError, match="diverged at t = "):
-        simulate(frozen(), 2.0, math.pi, integrator="GaussJackson", timestep=timestep)
+@pytest.mark.parametrize("phi_dot0", [5.0, 200.0])
+def test_a_timestep_that_is_too_long_is_said_to_be(phi_dot0: float, timestep: float) -> None:
+    """The first steps are not found, or the load, which rolls down faster and faster, turns too far in a later one."""
+    with pytest.raises(DivergenceError, match=r"failed at t = [\d.]+ s: take a shorter timestep"):
+        simulate(frozen(), 2.0, math.pi, phi_dot0, integrator="GaussJackson", timestep=timestep)
+
+
+def test_an_angle_that_mujoco_does_not_allow_is_said_to_be_no_longer_finite() -> None:
+    """At 5 rad/s and faster the load has a fifth of a second at most to its largest number, 1e10."""
+    method = GaussJackson(Dynamics(build(frozen())), 1e-3, pendulum_time(frozen(), 1.0))
+    with pytest.raises(DivergenceError, match=r"diverged at t = 0\.\d+ s: its state is no longer finite"):
+        method.run(np.array([1e10 - 1, 5.0]), np.array([0.2]))
 
 
 @pytest.mark.parametrize("rolling", ["equality", "contact"])

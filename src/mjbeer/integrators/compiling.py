@@ -60,7 +60,7 @@ def call_c(typing_context, function, model, data):
 
 @contextmanager
 def announced() -> Generator[None]:
-    """Print a notice in a terminal if compiling, and not reading kept code, takes over a second in the block."""
+    """Print a notice in a terminal if compiling takes over a second; loading kept code prints none."""
 
     def notify() -> None:
         from mjbeer.output import terminal  # takes a tenth of a second to import

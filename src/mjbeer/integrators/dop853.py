@@ -16,12 +16,13 @@ from mjbeer.integrators.dynamics import (
     DONE,
     MORE,
     NOT_FINITE,
+    ON_TIME,
     STEP_TOO_SMALL,
     Block,
     Dynamics,
     Steps,
-    copy,
     room_for_ends,
+    write,
     write_derivative,
 )
 from mjbeer.model.mujoco_library import LARGEST, quiet
@@ -40,7 +41,9 @@ _COEFFICIENTS = 7
 """Number of coefficients of the continuous output, for each component of the state."""
 
 _CAUTION = 0.9
-"""The next step over the one whose error would just be tolerated; this and the next three as in the reference."""
+"""The next step divided by the one whose error would just be tolerated.
+
+This and the next four numbers are those of Hairer's DOPRI5."""
 _SHRINK = 0.2
 """Least ratio of a step to the one before."""
 _GROW = 10.0
@@ -49,8 +52,15 @@ _MEMORY = 0.04
 """Power (beta) of the error of the step before in the next one: it saves two of three rejected steps."""
 _LEAST_ERROR = 1e-4
 """Smallest error of the step before that counts."""
+_LEAST_NEW_ERROR = 1e-12
+"""Smallest error of the step itself that counts: without any error the next step would be infinite. At this error it is
+already about `_GROW` times as long."""
 _SHORTEST = 4e-16
-"""Shortest step over the time that has passed: with a shorter one time stands still."""
+"""Shortest step divided by the time that has passed: with a shorter one time stands still."""
+_SHORTEST_AT_START = 1e-200
+"""Shortest step [s] where no time has passed yet: far below what any motion needs."""
+_IS_AT_END = 1e-12
+"""Share of a step within which a sample is at its end: what the two times differ by is rounding."""
 _BLOCK = 20_000
 """Steps between two returns to Python, so that a long run can be interrupted."""
 _HALVINGS = 30
@@ -58,14 +68,14 @@ _HALVINGS = 30
 _AT_AN_END = 1e-6
 """Share of a step within which a corner is at its end. A torque with the square of the rate is then 1e-12 off there."""
 _ROUNDING = 32 * float(np.finfo(float).eps)
-"""Size of a sum of rates that may be the rounding of its terms, over the sum of their sizes."""
+"""Size of a sum of rates that may be the rounding of its terms, divided by the sum of their sizes."""
 
 
 class _Control(NamedTuple):
     """How steps are chosen."""
 
     fixed: bool  # whether all steps are equal; if so, the rest does not count
-    tolerance: float  # largest error of a step, over `scale` + |state|
+    tolerance: float  # largest error of a step divided by `scale` + |state|
     scale: np.ndarray  # shape (nq + nv,)
     longest: float  # [s]
     corners: np.ndarray  # rates at whose zeros steps end, as weights of the state's components
@@ -88,7 +98,7 @@ class _Place(NamedTuple):
     step: float  # length of the next step [s]
     sample: int  # index of the next sample
     steps: int  # taken so far
-    error: float  # of the last step, over the tolerated one
+    error: float  # of the last step divided by the tolerated one
     longest: float  # step so far [s]
 
 
@@ -209,7 +219,7 @@ def _advance(dynamics, tableau, control, work, samples, ends, place):
             error = _error(tableau, control, work, step) if finite else np.inf
             if not error < 1.0:  # take it again
                 step *= max(_SHRINK, _CAUTION * error ** (-1 / 8)) if finite else _SHRINK
-                if not step > _SHORTEST * max(time, 1e-300) or step < 1e-200:
+                if not step > max(_SHORTEST * time, _SHORTEST_AT_START):  # it may also be NaN
                     status = STEP_TOO_SMALL if finite else NOT_FINITE
                     break
                 continue
@@ -222,11 +232,11 @@ def _advance(dynamics, tableau, control, work, samples, ends, place):
                 continue
         steps += 1
         end_time = steps * step if control.fixed else time + step
-        passed = end_time * (1 + 1e-14)  # a sample at the end of the step may be so much after it
+        passed = end_time * (1 + ON_TIME)
         while sample < samples.times.size and samples.times[sample] <= passed:
             part = (samples.times[sample] - time) / (end_time - time)
-            if part > 1 - 1e-12:
-                copy(end, samples.states[sample])
+            if part > 1 - _IS_AT_END:
+                write(end, samples.states[sample])
             else:
                 if not has_output:
                     evaluations += _prepare_output(dynamics, tableau, work, step)
@@ -234,8 +244,8 @@ def _advance(dynamics, tableau, control, work, samples, ends, place):
                 _interpolate(work, part, samples.states[sample])
             sample += 1
         time = end_time
-        copy(end, state)
-        copy(work.stages[_END], work.stages[0])
+        write(end, state)
+        write(work.stages[_END], work.stages[0])
         longest = max(longest, step)
         if row < ends.times.size:
             _write_end(samples, ends, row, time, state)
@@ -274,7 +284,7 @@ def _is_finite(state):
 
 @compiled
 def _error(tableau, control, work, step):
-    """Return the estimated error of the step over the tolerated one."""
+    """Return the estimated error of the step divided by the tolerated one."""
     optimize_for_size()
     fifth_squares = 0.0
     third_squares = 0.0
@@ -295,7 +305,8 @@ def _error(tableau, control, work, step):
 @inlined
 def _next_step(control, step, error, error_before, remaining):
     """Return the length of the step after one with this `error` [s], up to the end of the run in `remaining` [s]."""
-    growth = _CAUTION * max(error, 1e-12) ** (0.75 * _MEMORY - 1 / 8) * error_before**_MEMORY
+    # exponents as in DOPRI5, for order 8
+    growth = _CAUTION * max(error, _LEAST_NEW_ERROR) ** (0.75 * _MEMORY - 1 / 8) * error_before**_MEMORY
     following = min(control.longest, step * min(_GROW, max(_SHRINK, growth)))
     if remaining > 0:  # a motion at rest would take steps without bound
         following = min(following, remaining)
@@ -308,10 +319,10 @@ def _write_end(samples, ends, row, time, state):
     last = samples.times.size - 1
     if time > samples.times[last]:
         ends.times[row] = samples.times[last]
-        copy(samples.states[last], ends.states[row])
+        write(samples.states[last], ends.states[row])
     else:
         ends.times[row] = time
-        copy(state, ends.states[row])
+        write(state, ends.states[row])
 
 
 @compiled

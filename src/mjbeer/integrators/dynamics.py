@@ -21,6 +21,10 @@ STEP_TOO_SMALL = 2
 """No step is small enough for the tolerance."""
 NOT_FINITE = 3
 """The motion is not finite any more."""
+STEP_TOO_LONG = 4
+"""The method does not converge at this timestep."""
+ON_TIME = 1e-14
+"""Share of the time that has passed by which a sample may lie after the end of a step: both have been rounded."""
 _CONSTRAINT = int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
 _DAMPER = int(mujoco.mjtDisableBit.mjDSBL_DAMPER)
 _ACTUATION = int(mujoco.mjtDisableBit.mjDSBL_ACTUATION)
@@ -57,11 +61,11 @@ class Steps(NamedTuple):
 class Block(NamedTuple):
     """How a block of steps has ended."""
 
-    status: int  # one of the four above
+    status: int  # one of those above
     time: float  # that the run has reached [s]
     evaluations: int  # of the dynamics in this block
     rows: int  # ends of steps that it wrote for the observer
-    place: tuple  # where the next block begins, in the method's own terms
+    resume_at: tuple  # where the next block begins, in the method's own terms
 
 
 class Dynamics:
@@ -76,7 +80,7 @@ class Dynamics:
         self.evaluations = 0
         """Number of evaluations in all runs so far."""
         self.most_evaluations = math.inf
-        """The number at which a run is given up, looked at once a block of steps."""
+        """The number at which a run is given up, checked after each block."""
         flags = model.opt.disableflags
         self.constrained = not flags & _CONSTRAINT
         """Whether the model may have constraints."""
@@ -95,7 +99,7 @@ class Dynamics:
             qacc=self.data.qacc_smooth if self._smooth else self.data.qacc,
             used=self._used_positions(),
         )
-        """What kernels take of it."""
+        """The model and its data, as kernels take them."""
         self.model_has_changed()
 
     def _used_positions(self) -> np.ndarray:
@@ -112,7 +116,7 @@ class Dynamics:
         return used
 
     def model_has_changed(self) -> None:
-        """Take over new numbers of the model: only here are the actuator forces of a smooth model computed."""
+        """Take notice of new numbers in the model. For a smooth one this computes its constant actuator forces."""
         vars(self).pop("corners", None)
         if self._smooth and self._actuated:
             mujoco.mj_forward(self.model, self.data)
@@ -140,7 +144,7 @@ class Dynamics:
         return weights
 
     def derivative(self, state: np.ndarray) -> np.ndarray:
-        """Return the time derivative of a state by MuJoCo's Python binding, which serves once a run."""
+        """Return the time derivative of a state by MuJoCo's Python binding, called once a run."""
         qpos, qvel = np.split(state, [self.model.nq])
         self.data.qpos[:] = qpos * self.kernel_view.used
         self.data.qvel[:] = qvel
@@ -163,7 +167,8 @@ class Dynamics:
         begins. It returns a `Block`. Between two blocks the user can interrupt a run.
 
         Raises:
-          DivergenceError: if the motion stops being finite, no step is small enough, or there are too many evaluations.
+          DivergenceError: if the motion stops being finite, its timestep is too long, no step is small enough, or
+            there are too many evaluations.
         """
         status = MORE
         time = 0.0
@@ -173,14 +178,19 @@ class Dynamics:
                     f"the {name} run was given up at t = {time:.6g} s after {self.evaluations} evaluations"
                 )
             with nullcontext() if kernel.overloads else announced():
-                status, time, evaluations, rows, place = kernel(*arguments, ends, place)
-            self.evaluations += evaluations
-            if observer and rows:
-                observer(ends.times[:rows], ends.states[:rows])
+                block = kernel(*arguments, ends, place)
+            status = block.status
+            time = block.time
+            place = block.resume_at
+            self.evaluations += block.evaluations
+            if observer and block.rows:
+                observer(ends.times[: block.rows], ends.states[: block.rows])
         if status == NOT_FINITE:
             raise DivergenceError(f"the {name} run diverged at t = {time:.6g} s: its state is no longer finite")
         if status == STEP_TOO_SMALL:
             raise DivergenceError(f"the {name} run diverged at t = {time:.6g} s: no step is small enough for it")
+        if status == STEP_TOO_LONG:
+            raise DivergenceError(f"the {name} run failed at t = {time:.6g} s: take a shorter timestep")
         return place
 
 
@@ -212,7 +222,7 @@ def write_derivative(dynamics, state, out):
 
 
 @inlined
-def copy(values, out):
+def write(values, out):
     """Write values to `out`, of the same size: an assignment would compile the text of an error for seconds."""
     for i in range(values.size):
         out[i] = values[i]

@@ -19,10 +19,10 @@ from numba import config, njit
 _PACKAGE = pathlib.Path(__file__).parents[1]
 SOURCES = tuple(
     path
-    for room in ("theory", "model", "integrators", "simulation")
-    for path in sorted((_PACKAGE / room).rglob("*.py"))
+    for folder in ("theory", "model", "integrators", "simulation")
+    for path in sorted((_PACKAGE / folder).rglob("*.py"))
 )
-"""The files from which kernels may take functions and constants: those of the rooms that have kernels, and below."""
+"""The files from which kernels may take functions and constants: those of the folders that have kernels, and below."""
 _PREFIX = "mjbeer-"
 _UNUSED = 24 * 3600.0
 """Time after which the folder of other sources is removed [s]. A process that has begun earlier, with those sources,
@@ -48,11 +48,12 @@ def compile_and_keep(function: Callable[..., Any], **options: Any) -> Any:
 def _folder() -> pathlib.Path:
     """Return the folder for these sources, in that which numba itself would take: one that can be written to.
 
-    Each user has one: what another user has made there need not let this one write.
+    Each user has a folder of their own, as they may not be able to write into another's.
     """
     content = hashlib.sha256(str(os.getuid() if hasattr(os, "getuid") else "").encode())
     for path in SOURCES:
         content.update(path.read_bytes())
+    # numba tells only a compiled function where it would keep it.
     return pathlib.Path(njit(_folder, cache=True).stats.cache_path, _PREFIX + content.hexdigest()[:16])
 
 

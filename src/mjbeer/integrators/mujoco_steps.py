@@ -45,6 +45,7 @@ class MuJoCoSteps:
         for states in self._blocks(start, int(wanted[-1])):
             after = done + len(states)
             first, end = np.searchsorted(wanted, [done + 1, after + 1])
+            # the samples that lie in this block
             samples[first:end] = states[wanted[first:end] - (done + 1)]
             if observer:
                 observer(self._step * np.arange(done + 1, after + 1), states)

@@ -24,7 +24,9 @@ from mjbeer.integrators.gauss_jackson.weights import (
 MIDDLE = COUNT // 2
 """Index of the start among the first steps."""
 _ITERATIONS = 30
-"""Largest number of iterations; a timestep that is not too long takes five to eight."""
+"""Largest number of iterations.
+
+At a timestep that is not too long the law takes six to twelve, after which MuJoCo changes no more than rounding."""
 _ROUNDING = 1e-16
 """Largest change of an acceleration in an iteration, as a share of the largest one, that is rounding."""
 _SMALL_CHANGE = 1e-9
@@ -36,11 +38,12 @@ _OUTWARDS = np.argsort(np.abs(np.arange(COUNT) - MIDDLE), stable=True)
 
 
 def _since_start() -> tuple[np.ndarray, np.ndarray]:
-    """Return weights of the first accelerations in velocity and position less those that the start implies.
+    """Return the weights that give velocity and position at each first step, counted from the start.
 
-    The start implies its own velocity at all steps, and a position that changes evenly. Each has shape (COUNT, COUNT),
-    with a row for each step, the first one first.
+    These are the velocity less that at the start, and the position less its even motion from there. Each has shape
+    (COUNT, COUNT), with a row for each step, the first one first.
     """
+    # rows for back = COUNT - 1 down to 0
     velocities = VELOCITY_WEIGHTS[:0:-1]
     velocities_since = velocities - velocities[MIDDLE]
     steps = np.arange(-MIDDLE, MIDDLE + 1)[:, None]
@@ -55,31 +58,32 @@ _VELOCITIES_SINCE, _POSITIONS_SINCE = _since_start()
 class Accelerations(NamedTuple):
     """What MuJoCo says of a state."""
 
-    phi: float  # second derivative of phi in Sundman time [rad/s^2]
+    phi_second: float  # second derivative of phi in Sundman time [rad/s^2]
     steady: float  # of the slide less arm sin(phi), in time [m/s^2]
 
 
 class History(NamedTuple):
     """The last `Accelerations`; the newest `COUNT` of them count."""
 
-    phi: np.ndarray
+    phi_second: np.ndarray
     steady: np.ndarray
 
 
 class FirstSums(NamedTuple):
     """What the first steps have given besides their accelerations."""
 
-    evaluations: int  # 0 if no accelerations were found
-    first: float  # the first sum of the accelerations, up to that of the last of these steps
-    second: float
+    found: bool  # whether the iteration has converged; if not, the sums say nothing
+    evaluations: int
+    first_sum: float  # of the accelerations, up to that of the last of these steps
+    second_sum: float
 
 
 @compiled
 def evaluate(dynamics, sundman, phi, rate):
     """Return MuJoCo's `Accelerations` where phi has a `rate` [rad/s] in Sundman time. The slide rests at its origin."""
     last = dynamics.qpos.size - 1
-    sin = math.sin(sundman.turns * phi)
-    cos = math.cos(sundman.turns * phi)
+    sin = math.sin(sundman.multiple * phi)
+    cos = math.cos(sundman.multiple * phi)
     dt_ds_squared = sundman.constant + sundman.varying * sin * sin
     phi_dot = rate / math.sqrt(dt_ds_squared)
     dynamics.qpos[last] = phi
@@ -87,7 +91,7 @@ def evaluate(dynamics, sundman, phi, rate):
     accelerate(dynamics)
     phi_ddot = dynamics.qacc[last]
     # phi' = phi_dot dt/ds, and so phi'' = phi_ddot (dt/ds)^2 + phi_dot^2 d/dphi (dt/ds)^2 / 2.
-    half_slope = sundman.varying * sundman.turns * sin * cos
+    half_slope = sundman.varying * sundman.multiple * sin * cos
     in_s = dt_ds_squared * phi_ddot + half_slope * phi_dot * phi_dot
     steady = 0.0
     if last > 0:
@@ -116,31 +120,35 @@ def find_first_steps(dynamics, sundman, start, timestep, history):
             by_law = False
         change_before = change
     # The two formulas of `weights` at the start, solved for the sums.
-    first = start.rate / timestep - weighted(VELOCITY_WEIGHTS, _START, history.phi, _ALL)
-    place = start.phi / (timestep * timestep)
-    second = place + (1 + MIDDLE) * first - weighted(POSITION_WEIGHTS, _START, history.phi, _ALL)
-    return FirstSums(evaluations if found else 0, first, second)
+    first_sum = start.rate / timestep - weighted(VELOCITY_WEIGHTS, _START, history.phi_second, _ALL)
+    scaled_phi = start.phi / (timestep * timestep)
+    from_history = weighted(POSITION_WEIGHTS, _START, history.phi_second, _ALL)
+    second_sum = scaled_phi + (1 + MIDDLE) * first_sum - from_history
+    return FirstSums(found, evaluations, first_sum, second_sum)
 
 
 @compiled
 def _improve(dynamics, sundman, start, timestep, history, by_law):
-    """Improve the first accelerations, by the law or by MuJoCo; return the largest change over the largest of them."""
+    """Improve the first accelerations, by the law or by MuJoCo.
+
+    Return the largest change, divided by the largest of them.
+    """
     optimize_for_size()
     change = 0.0
     largest = 1e-300
     for order in range(COUNT):
         k = _OUTWARDS[order]
-        position_since = timestep * weighted(_POSITIONS_SINCE, k, history.phi, _ALL)
+        position_since = timestep * weighted(_POSITIONS_SINCE, k, history.phi_second, _ALL)
         phi = start.phi + timestep * ((k - MIDDLE) * start.rate + position_since)
         if by_law:
             law = sundman.law
             acceleration = law.constant + law.cosine * math.cos(phi) + law.sine * math.sin(phi)
         else:
-            rate = start.rate + timestep * weighted(_VELOCITIES_SINCE, k, history.phi, _ALL)
-            new = evaluate(dynamics, sundman, phi, rate)
-            acceleration = new.phi
-            history.steady[k] = new.steady
-        change = max(change, abs(acceleration - history.phi[k]))
+            rate = start.rate + timestep * weighted(_VELOCITIES_SINCE, k, history.phi_second, _ALL)
+            evaluated = evaluate(dynamics, sundman, phi, rate)
+            acceleration = evaluated.phi_second
+            history.steady[k] = evaluated.steady
+        change = max(change, abs(acceleration - history.phi_second[k]))
         largest = max(largest, abs(acceleration))
-        history.phi[k] = acceleration
+        history.phi_second[k] = acceleration
     return change / largest

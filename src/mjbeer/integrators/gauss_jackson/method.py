@@ -25,11 +25,13 @@ from mjbeer.integrators.dynamics import (
     DONE,
     MORE,
     NOT_FINITE,
+    ON_TIME,
+    STEP_TOO_LONG,
     Block,
     Dynamics,
     Steps,
-    copy,
     room_for_ends,
+    write,
 )
 from mjbeer.integrators.gauss_jackson.first_steps import (
     MIDDLE,
@@ -64,10 +66,10 @@ _LAST = row_of(0)
 
 
 class _Totals(NamedTuple):
-    """Sums of many terms: each is an array of the sum and of what rounding has added to it so far."""
+    """Sums of many terms: each is an array of the sum and of the rounding error it carries."""
 
-    first: np.ndarray  # the first sum of the accelerations of phi, in units of the step
-    second: np.ndarray  # the second
+    first_sum: np.ndarray  # of the accelerations of phi, in units of the step
+    second_sum: np.ndarray  # of these sums
     time: np.ndarray  # at the last state that was read off [s]
     position: np.ndarray  # of the slide less arm sin(phi), whose acceleration is steady, at that time [m]
     velocity: np.ndarray  # of the same [m/s]
@@ -76,6 +78,7 @@ class _Totals(NamedTuple):
 class _Place(NamedTuple):
     """Where a run is between two blocks."""
 
+    is_first: bool  # whether no block has been taken yet
     back: int  # how many steps before the last acceleration the last state was read off
     sample: int  # index of the next sample
     node: Node  # the last state that was read off
@@ -85,8 +88,8 @@ class GaussJackson:
     """The Gauss-Jackson method with second sums around the forward dynamics of one model.
 
     The model has the hinge phi alone, or after a slide on which no acceleration depends. All steps last a `timestep`
-    [s] in `sundman_time`. A step is one evaluation, where DOP853 has twelve and steps three times as long. A damping or
-    a constraint that decays fast would make the method unstable.
+    [s] in `sundman_time`. A step is one evaluation. DOP853 has twelve or more in a step that is about as long. A
+    damping or a constraint that decays fast would make the method unstable.
 
     Raises:
       UnsupportedError: if the model has constraints or damping.
@@ -107,7 +110,8 @@ class GaussJackson:
         """Return the states at increasing `times` [s], shape (samples, nq + nv), of the motion from `start` at time 0.
 
         Raises:
-          DivergenceError: if the motion stops being finite, or there are too many evaluations.
+          DivergenceError: if the motion stops being finite, the timestep is too long, or there are too many
+            evaluations.
         """
         dynamics = self._dynamics
         sundman = self._sundman_time
@@ -130,7 +134,7 @@ class GaussJackson:
                 coefficients,
                 samples,
             ),
-            _Place(MIDDLE, at_start, _node_at(start, sundman)),
+            _Place(is_first=True, back=MIDDLE, sample=at_start, node=_node_at(start, sundman)),
             room_for_ends(start, BLOCK + COUNT if observer else 0),
             observer,
         )
@@ -171,41 +175,44 @@ def _advance(dynamics, sundman, timestep, history, totals, coefficients, samples
     status = MORE
     evaluations = 0
     row = 0
-    end = history.phi.size - BLOCK  # `COUNT`: the accelerations before this index are there
-    if back == MIDDLE:  # this is the first block
+    end = history.phi_second.size - BLOCK  # `COUNT`: the accelerations before this index are there
+    if place.is_first:
         begin = find_first_steps(dynamics, sundman, node, timestep, history)
-        totals.first[0] = begin.first
-        totals.second[0] = begin.second
+        totals.first_sum[0] = begin.first_sum
+        totals.second_sum[0] = begin.second_sum
         evaluations = begin.evaluations
         row = 1
-        if evaluations == 0:
-            status = NOT_FINITE
+        if not begin.found:
+            status = STEP_TOO_LONG
         elif sample == samples.times.size:
             status = DONE
-    while status == MORE and end < history.phi.size:
+    while status == MORE and end < history.phi_second.size:
         if back > LAG:  # the first steps are there already
             back -= 1
         else:
             _take_step(dynamics, sundman, timestep, history, totals, end)
             end += 1
             evaluations += 1
-        curve = StepCurve(coefficients, totals.first[0], totals.second[0], timestep, back + 1)
-        after = end_node(sundman, curve, history.phi, end)
-        if not (abs(after.phi) < LARGEST and timestep * abs(after.rate) < LARGEST_TURN):
-            status = NOT_FINITE  # it may also be NaN
+        curve = StepCurve(coefficients, totals.first_sum[0], totals.second_sum[0], timestep, back + 1)
+        after = end_node(sundman, curve, history.phi_second, end)
+        if not abs(after.phi) < LARGEST:  # it may also be NaN
+            status = NOT_FINITE
             break
-        duration = whole_duration(sundman, curve, history.phi, end)
+        if not timestep * abs(after.rate) < LARGEST_TURN:
+            status = STEP_TOO_LONG
+            break
+        duration = whole_duration(sundman, curve, history.phi_second, end)
         steady = _mean_steady(history, end - 1 - back, node, after)
         step = WholeStep(node, after, duration, steady)
         if samples.times[sample] <= _latest(totals, step):
-            fit(curve, history.phi, end)
+            fit(curve, history.phi_second, end)
             sample = _write_samples(sundman, curve, step, totals, samples, sample)
             if sample == samples.times.size:
                 status = DONE
         if row < ends.times.size:
             if status == DONE:  # the run ends with its last sample, within this step
                 ends.times[row] = samples.times[sample - 1]
-                copy(samples.states[sample - 1], ends.states[row])
+                write(samples.states[sample - 1], ends.states[row])
             else:
                 ends.times[row] = totals.time[0] + duration
                 _write(sundman, after, step, totals, duration, ends.states, row)
@@ -215,29 +222,29 @@ def _advance(dynamics, sundman, timestep, history, totals, coefficients, samples
         _add(totals.velocity, duration * steady)
         node = after
     for k in range(COUNT):
-        history.phi[k] = history.phi[end - COUNT + k]
+        history.phi_second[k] = history.phi_second[end - COUNT + k]
         history.steady[k] = history.steady[end - COUNT + k]
-    return Block(status, totals.time[0], evaluations, row, _Place(back, sample, node))
+    return Block(status, totals.time[0], evaluations, row, _Place(False, back, sample, node))
 
 
 @inlined
 def _take_step(dynamics, sundman, timestep, history, totals, end):
     """Predict, evaluate and correct the next step: write its accelerations at index `end`, and add them up."""
     square = timestep * timestep
-    first = totals.first[0]
-    second = totals.second[0]
-    predicted = square * (second + weighted(POSITION_WEIGHTS, _NEXT, history.phi, end))
-    rate = timestep * (first + weighted(VELOCITY_WEIGHTS, _NEXT, history.phi, end))
-    new = evaluate(dynamics, sundman, predicted, rate)
-    history.phi[end] = new.phi
-    history.steady[end] = new.steady
-    corrected = square * (second + weighted(POSITION_WEIGHTS, _LAST, history.phi, end + 1))
+    first_sum = totals.first_sum[0]
+    second_sum = totals.second_sum[0]
+    predicted = square * (second_sum + weighted(POSITION_WEIGHTS, _NEXT, history.phi_second, end))
+    rate = timestep * (first_sum + weighted(VELOCITY_WEIGHTS, _NEXT, history.phi_second, end))
+    evaluated = evaluate(dynamics, sundman, predicted, rate)
+    history.phi_second[end] = evaluated.phi_second
+    history.steady[end] = evaluated.steady
+    corrected = square * (second_sum + weighted(POSITION_WEIGHTS, _LAST, history.phi_second, end + 1))
     law = sundman.law
     slope = law.sine * math.cos(predicted) - law.cosine * math.sin(predicted)
-    acceleration = new.phi + slope * (corrected - predicted)
-    history.phi[end] = acceleration
-    _add(totals.first, acceleration)
-    _add(totals.second, totals.first[0])
+    acceleration = evaluated.phi_second + slope * (corrected - predicted)
+    history.phi_second[end] = acceleration
+    _add(totals.first_sum, acceleration)
+    _add(totals.second_sum, totals.first_sum[0])
 
 
 @inlined
@@ -254,7 +261,7 @@ def _mean_steady(history, index, before, after):
 @inlined
 def _latest(totals, step):
     """Return the time [s] up to which samples belong to a step: its end, but for rounding."""
-    return (totals.time[0] + step.duration) * (1 + 1e-14)
+    return (totals.time[0] + step.duration) * (1 + ON_TIME)
 
 
 @compiled
@@ -287,7 +294,7 @@ def _write(sundman, node, step, totals, since, states, row):
 
 @inlined
 def _add(total, term):
-    """Add a term to one of the totals, less what rounding has added to that before (Kahan's sum)."""
+    """Add a term to one of the totals, less the rounding error that it carries (Kahan's sum)."""
     value = total[0]
     term -= total[1]
     total[0] = value + term

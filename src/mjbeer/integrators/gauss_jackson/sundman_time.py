@@ -25,7 +25,8 @@ LARGEST_TURN = 4.0
 _MOST_POINTS = 12
 """Largest number of points over which dt/ds is integrated."""
 _LARGEST_ELLIPSE = 20.0
-"""Largest ellipse of `_points_for`: a larger one would give too few points, as phi is no straight line in a step."""
+"""Largest ellipse that `_points_for` assumes: a larger one would give too few points, as phi is not linear in s
+within a step."""
 
 
 class PendulumLaw(NamedTuple):
@@ -37,7 +38,7 @@ class PendulumLaw(NamedTuple):
 
 
 class SundmanTime(NamedTuple):
-    """A time s with dt/ds = sqrt(constant + varying sin^2(turns phi)), which must be positive.
+    """A time s with dt/ds = sqrt(constant + varying sin^2(multiple phi)), which must be positive.
 
     Whatever dt/ds and `law` are, the motion is the same, as its accelerations are MuJoCo's; the nearer they come to the
     motion's own, the longer the steps may be.
@@ -45,7 +46,7 @@ class SundmanTime(NamedTuple):
 
     constant: float
     varying: float
-    turns: float
+    multiple: float  # 1 for a coupling, 1/2 for a chord
     law: PendulumLaw  # that phi nearly obeys
     arm: float  # the slide less arm sin(phi) is evenly accelerated [m]
     points: np.ndarray  # of Gauss's formula in a step, between 0 and 1
@@ -62,29 +63,29 @@ def sundman_time(
     """
     constant = law.base / unit
     varying = law.chord / unit
-    turns = 0.5
+    multiple = 0.5
     if law.coupling > 0:
         varying = law.coupling / unit
-        turns = 1.0
-    count = _points_for(constant, varying, turns, precision, largest_turn)
+        multiple = 1.0
+    count = _points_for(constant, varying, multiple, precision, largest_turn)
     points, weights = _gauss(count)
     return SundmanTime(
         constant=constant,
         varying=varying,
-        turns=turns,
+        multiple=multiple,
         law=PendulumLaw(
             constant=law.ramp / unit,
             cosine=law.depth / unit * math.sin(law.bottom),
             sine=-law.depth / unit * math.cos(law.bottom),
         ),
-        arm=float(law.arm),
+        arm=law.arm,
         points=points,
         weights=weights,
         places=_places(count),
     )
 
 
-def _points_for(constant: float, varying: float, turns: float, precision: float, largest_turn: float) -> int:
+def _points_for(constant: float, varying: float, multiple: float, precision: float, largest_turn: float) -> int:
     """Return the number of points with which Gauss's formula gives a duration to some precision.
 
     Its error falls by the square of an ellipse's size with each point. The foci of the ellipse are the ends of the
@@ -93,7 +94,7 @@ def _points_for(constant: float, varying: float, turns: float, precision: float,
     """
     size = math.log(_LARGEST_ELLIPSE)
     if varying > 0 and largest_turn > 0:
-        zero = math.asinh(math.sqrt(constant / varying)) / turns
+        zero = math.asinh(math.sqrt(constant / varying)) / multiple
         size = min(size, math.asinh(2 * zero / largest_turn))
     return min(_MOST_POINTS, math.ceil(-math.log(precision) / (2 * size)))
 
@@ -123,5 +124,5 @@ def _places(count: int) -> np.ndarray:
 @inlined
 def dt_ds(sundman, phi):
     """Return dt/ds at an angle."""
-    sin = math.sin(sundman.turns * phi)
+    sin = math.sin(sundman.multiple * phi)
     return math.sqrt(sundman.constant + sundman.varying * sin * sin)

@@ -1,4 +1,7 @@
-"""What Gauss-Jackson is told about a motion, as plain numbers: only the length of its steps depends on them."""
+"""What Gauss-Jackson is told about a motion, as plain numbers.
+
+They decide how long its steps may be, and not where the motion goes.
+"""
 
 import math
 from typing import NamedTuple
@@ -12,13 +15,15 @@ class SwingLaw(NamedTuple):
         V = -ramp phi - depth cos(phi - bottom).
 
     One of `chord` and `coupling` is 0. If the model has a slide, the slide less arm sin(phi) is evenly accelerated.
+
+    J and V are those of `theory.formulas`, written again here because the integrators import no theory.
     """
 
     base: float  # [kg m^2]
     chord: float  # [kg m^2]
     coupling: float  # [kg m^2]
     ramp: float  # [N m]
-    depth: float  # [N m]
+    depth: float  # [J]
     bottom: float  # [rad]
     arm: float = 0.0  # [m]
 

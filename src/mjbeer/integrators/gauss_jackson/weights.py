@@ -8,8 +8,8 @@ before the last acceleration; a `back` of -1 predicts the next step.
 
 In units of the step, with both sums up to the last acceleration, and the weights of that `back`,
 
-    velocity = first + weights . accelerations,
-    position = second - (1 + back) first + weights . accelerations.
+    velocity = first_sum + weights . accelerations,
+    position = second_sum - (1 + back) first_sum + weights . accelerations.
 """
 
 import math
@@ -23,7 +23,9 @@ from numpy.polynomial import Polynomial
 from mjbeer.integrators.compiling import inlined
 
 COUNT = 13
-"""Number of accelerations that are kept: the method has differences up to the twelfth."""
+"""Number of accelerations that are kept: the method has differences up to the twelfth.
+
+One more than a multiple of four, as `weighted` adds them up in four sums."""
 LAG = 2
 """Steps after which a state is read off; with more of them only the evaluations grow."""
 CENTRE = LAG + 0.5
@@ -31,10 +33,10 @@ CENTRE = LAG + 0.5
 VELOCITY = 1
 """The power of z/(-ln(1 - z)) for velocities."""
 POSITION = 2
-"""The same for positions."""
+"""The power for positions."""
 
 
-def weights(power: int, back: int) -> np.ndarray:
+def weights_at(power: int, back: int) -> np.ndarray:
     """Return the weights of the last `COUNT` accelerations, the oldest first, shape (COUNT,).
 
     They give what the `power` says, `VELOCITY` or `POSITION`, `back` steps before the last acceleration.
@@ -47,7 +49,7 @@ def weights(power: int, back: int) -> np.ndarray:
 
 
 def position_polynomials() -> np.ndarray:
-    """Return the `weights` of positions as polynomials of `back` - `CENTRE`, shape (COUNT, COUNT + 2).
+    """Return the weights of positions as polynomials of `back` - `CENTRE`, shape (COUNT, COUNT + 2).
 
     The highest power is first.
     """
@@ -92,12 +94,15 @@ def _of_ordinates(differences: Sequence[Any]) -> list[Any]:
 
 def _rows(power: int) -> np.ndarray:
     """Return the weights for `back` from -1 to `COUNT` - 1, one in a row."""
-    return np.stack([weights(power, back) for back in range(-1, COUNT)])
+    return np.stack([weights_at(power, back) for back in range(-1, COUNT)])
 
 
 VELOCITY_WEIGHTS = _rows(VELOCITY)
+"""Weights of velocities, shape (COUNT + 1, COUNT); `row_of` says in which row those of a `back` are."""
 POSITION_WEIGHTS = _rows(POSITION)
+"""Weights of positions, in the same rows."""
 POSITION_POLYNOMIALS = position_polynomials()
+"""Weights of positions as polynomials, for any `back`, shape (COUNT, COUNT + 2)."""
 
 
 def row_of(back: int) -> np.int64:
@@ -109,7 +114,8 @@ def row_of(back: int) -> np.int64:
 def weighted(weights, row, accelerations, end):
     """Return the sum of the `COUNT` accelerations before index `end`, with a row of weights, in four sums that overlap.
 
-    The order is written out: a compiler that may choose it gives other digits where it reads its cache.
+    The order of the additions is fixed: left to the compiler, code loaded from the cache could round differently from
+    code just compiled.
     """
     first = weights[row, COUNT - 1] * accelerations[end - 1]
     second = 0.0
