@@ -18,6 +18,7 @@ import numpy as np
 from mjbeer.exceptions import DivergenceError, ToleranceError
 from mjbeer.integrators import Method
 from mjbeer.theory.record import Record
+from mjbeer.theory.trajectory import largest_angle_error
 
 SAFETY = 10.0
 """Error estimate divided by the distance of two runs."""
@@ -112,14 +113,9 @@ def solve_to_tolerance(
 
 
 def largest_distance(problem: Problem, coarse: np.ndarray, fine: np.ndarray) -> float:
-    """Return the largest distance of two runs in phi or u/a [rad], relative to the angle turned where that is beyond 1.
-
-    The distance from what is no number is infinite.
-    """
-    turned = np.maximum.accumulate(np.abs((fine - problem.start) @ problem.angles))
-    apart = np.abs((fine - coarse) @ problem.angles) / np.maximum(turned, 1.0)
-    largest = float(apart.max())
-    return largest if largest < math.inf else math.inf
+    """Return the largest distance of two runs in phi or u/a [rad], relative to the angle turned beyond 1 rad."""
+    angles = problem.angles
+    return largest_angle_error(coarse @ angles, fine @ angles, problem.start @ angles)
 
 
 def not_reached(tolerance: float, reason: str) -> ToleranceError:
