@@ -21,7 +21,7 @@ T = TypeVar("T")
 # The domain is that of cans: the smallest and the largest value of each quantity.
 SIZE = (1e-3, 1e2)  # radius and length of a can [m]
 MASS = (1e-9, 1e4)  # [kg]; a can may also have none
-RATIO = (1e-3 * (1 - 1e-12), 1e3 * (1 + 1e-12))  # mass of a can in masses of its load, rounded
+RATIO = (1e-3 * (1 - 1e-12), 1e3 * (1 + 1e-12))  # mass of a can divided by that of its load; 1e-12 is for rounding
 LARGEST_INERTIA = RATIO[1]  # of a can or a load, divided by its mass and the radius squared
 INCLINE = (-math.radians(85), math.radians(85))  # [rad]
 FILL = (0.01, 1.0)  # depth of beer divided by the can's diameter
@@ -147,7 +147,7 @@ def path(value: Any) -> pathlib.Path:
 
 
 def instance(name: str, value: Any, kind: type[T]) -> T:
-    """Return `value` if it is an instance of a class of mjbeer."""
+    """Return `value` if it is an instance of `kind`."""
     if not isinstance(value, kind):
         raise ParameterError(f"{name} must be a {kind.__name__}, got {format_value(value)}")
     return value

@@ -69,7 +69,7 @@ def test_a_thick_liquid_has_its_mass(liquid: str, fill: float, modes: int, ratio
     can = standing(liquid, fill, modes=modes, damping_ratio=ratio)
     model = build(can)
     masses, heights = liquid_parts(model)
-    mass, first, _ = can.fixed_moments()
+    mass, first, _ = can.total_moments()
     assert masses.sum() == pytest.approx(can.mass, rel=1e-12)  # sums of a few numbers
     assert mass == pytest.approx(can.mass, rel=1e-12)
     assert masses @ (heights - can.height / 2) == pytest.approx(first, rel=1e-9, abs=1e-12 * can.mass * can.height)
@@ -166,8 +166,8 @@ def test_the_rows_find_a_wrong_model(monkeypatch: pytest.MonkeyPatch) -> None:
     other = measured.water(2, 0.55)
     # Differences of a step of 1e-4 give the model's stiffness to 1e-8, and errors of 2e-3 to 1e-5 of themselves.
     assert measured.reaction_errors(can) == pytest.approx(measured.left_out(can), rel=1e-4)
-    moments = other.fixed_moments()
-    monkeypatch.setattr(type(can), "fixed_moments", lambda self: moments - [0, moments[1], 0])
+    moments = other.total_moments()
+    monkeypatch.setattr(type(can), "total_moments", lambda self: moments - [0, moments[1], 0])
     assert measured.reaction_errors(other) != pytest.approx(measured.left_out(other), rel=0.1)
     monkeypatch.undo()
     monkeypatch.setattr(free, "BREAKING", 0.0)

@@ -180,7 +180,7 @@ def test_segment_s_width_is_its_integral(fill: float) -> None:
     shape = segment(fill)
     fourth = mp.quad(lambda t: mp.sin(t) ** 4, [0, mp.mpf(shape.half_angle)])
     allowed = ROUNDING * (1 + 4 / shape.half_angle**2) ** 2
-    assert shape.width == pytest.approx(float(2 * fourth / (3 * shape.area)), rel=allowed)
+    assert shape.mean_square_across == pytest.approx(float(2 * fourth / (3 * shape.area)), rel=allowed)
 
 
 def test_full_and_nearly_full() -> None:

@@ -70,7 +70,7 @@ def test_what_is_fixed_is_positive_everywhere(modes: int) -> None:
     """A body must have a mass and an inertia; the least share is 0.046 for shallow liquids."""
     for depth in np.geomspace(0.05, 50, 20):
         can = water(float(depth), modes)
-        mass, first, second = can.fixed_moments()
+        mass, first, second = can.total_moments()
         masses, bobs = can.slosh_masses(), can.pivots() - GRAVITY / can.frequencies() ** 2 - can.height / 2
         left = mass - masses.sum()
         inertia = second - masses @ bobs**2 - (first - masses @ bobs) ** 2 / left
@@ -101,7 +101,7 @@ def test_a_liquid_that_is_over_damped_does_not_slosh() -> None:
         assert len(getattr(honey, method)()) == 0
         assert len(getattr(honey, method)(3)) == 3
     assert honey.damping_ratios(1)[0] > 1
-    assert np.array_equal(honey.fixed_moments(), standing("honey", fill=0.03, modes=0).fixed_moments())
+    assert np.array_equal(honey.total_moments(), standing("honey", fill=0.03, modes=0).total_moments())
     assert standing("water", modes=3, damping_ratio=1.0).moving_modes == 0
     assert standing("water", modes=3, damping_ratio=0.999).moving_modes == 3
 

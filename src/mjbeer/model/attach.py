@@ -84,7 +84,7 @@ def attach(
         time_constant = stiffest(_integrator_name(parent.option), parent.option.timestep, contact=True)
         touching.solref = [time_constant, 1]
     reasons = _spoiling_options(parent.option, can) + _mass_bounds(parent.compiler, child)
-    # MuJoCo warns of what differs.
+    # With options of its own MuJoCo would warn that the child's differ from the parent's.
     child.option = parent.option
     child.visual.map.zfar = parent.visual.map.zfar
     frame = parent.body(body).add_frame(pos=pos, quat=quat)
@@ -232,9 +232,8 @@ def _mass_bounds(compiler: mujoco.MjsCompiler, child: mujoco.MjSpec) -> list[str
 def _fastest_decay(can: Standing | Scene) -> float:
     """Return the largest rate [1/s] at which damping slows the spin of a bob or of a can.
 
-    Where damping grows with the rate, it is that at the frequency of the first mode, or at
-    sqrt(g/a): thrown at 1 m/s, 0 of 1,976 cans diverge under RK4 up to its limit, and 510 of 1,112
-    beyond. What is in proportion has a sharp limit.
+    Linear damping has exactly this rate. Damping that grows with the rate is taken at the frequency
+    of the first mode, or at sqrt(g/a), which is an estimate.
     """
     if isinstance(can, Scene):
         if not can.damping_law:

@@ -72,7 +72,7 @@ def build(
 
     Raises:
       ParameterError: if a name is unknown, or a number is invalid.
-      UnsupportedError: if MuJoCo cannot have such a model, as for a massless can around a sliding
+      UnsupportedError: if MuJoCo cannot represent such a model, as for a massless can around a sliding
         load.
       TemplateError: if a file of MJCF is missing, or lacks an element into which a number is
         written.
@@ -222,7 +222,7 @@ def write_numbers(model: mujoco.MjModel, data: mujoco.MjData, numbers: ModelNumb
     `views` are the model's `compiled_views`.
 
     Raises:
-      UnsupportedError: if MuJoCo cannot have such a model.
+      UnsupportedError: if MuJoCo cannot represent such a model.
     """
     write_compiled(model, numbers.parameters, views)
     data.warning.number[:] = 0  # It may be that of the scene before.

@@ -23,8 +23,8 @@ from mjbeer.theory.scene import Attachment, Scene
 
 SHIPPED = pathlib.Path(__file__).with_name("shipped.sha256")
 """The SHA-256 of mjbeer's own mechanics files, which `make templates` writes. Their motions are
-compared with theory in tests and searches, so that their runs need not be checked. To run another
-file, with a comment more, takes longer, and is no less right."""
+compared with theory in tests and searches, so that their runs need not be checked. Any other
+file, even one with only another comment, is checked in every run, which takes longer."""
 _ALLOWED = 1e-13
 """Largest difference of phi_ddot from theory that a model may have, divided by what `_rounding`
 returns. In random scenes of all sizes, at 448 starts and in 408 runs, rounding takes up to 5e-15 of
@@ -50,7 +50,10 @@ def check_file(folder: pathlib.Path, attachment: Attachment, rolling: Rolling) -
 
 @functools.lru_cache(maxsize=64)
 def _check_content(paper: ModelNumbers, content: tuple[bytes, ...]) -> str | None:
-    """Return what is wrong with the file of the paper's can, which has this content."""
+    """Return what is wrong with the file of the paper's can.
+
+    `content` is not read here: it makes the cache notice an edited file.
+    """
     attachment = paper.scene.attachment
     damping = Damping(1e-3, 1e-4, 1e-5) if attachment == "sliding" else 0.0
     drag = 0.5 if attachment == "sliding" else 0.0

@@ -14,7 +14,7 @@ from mjbeer.model.mjcf_file import Parameters
 from mjbeer.model.setting import MUJOCO_INTEGRATORS
 
 Views: TypeAlias = dict[tuple[str, str], list[np.ndarray]]
-"""The arrays of a compiled model that have a parameter, by its element and attribute, in the order
+"""The arrays of a compiled model that hold a parameter, by its element and attribute, in the order
 of its numbers."""
 _INTEGRATORS: dict[str, int] = {
     name: int(mujoco.mjtIntegrator.__members__[f"mjINT_{name.upper()}"]) for name in MUJOCO_INTEGRATORS

@@ -57,7 +57,7 @@ def export(
 
     Raises:
       ParameterError: if a parameter is invalid.
-      UnsupportedError: if MuJoCo cannot have such a model.
+      UnsupportedError: if MuJoCo cannot represent such a model.
       TemplateError: if a file of MJCF is missing, lacks an element, or has other accelerations than
         theory.
       OutputError: if the file cannot be written.

@@ -22,9 +22,9 @@ from mjbeer.theory.scene import Scene, sliding
 from mjbeer.theory.standing import Standing, standing
 
 BREAKING = 0.02
-"""Damping ratio that a mode has more at the rate omega, growing with the square of the rate: waves
-break. It is chosen, not computed: with it thrown cans are stable at 5 ms. At an elevation of 0.1 R
-it adds 2e-4."""
+"""Damping ratio that breaking waves add to a mode whose pendulum turns at the rate omega; it grows with
+the square of that rate. It is chosen, not computed: with it thrown cans are stable at 5 ms. At an
+elevation of 0.1 R it adds 2e-4."""
 _LEAST_BOB_SHARE = 1e-3
 """Least share of a pendulum's inertia that its bob has about itself: MuJoCo moves nothing without
 inertia. The bob is heavier by as much, and nearer to the pivot, so that the motion is exactly the
@@ -59,12 +59,12 @@ def attached_spec(can: Standing | Scene, visuals: bool = True) -> mujoco.MjSpec:
     mjcf_file.remove(root, "freejoint")
     if can.attachment == "frozen":
         mjcf_file.remove(root, "joint[@name='swing']", "jointpos", "jointvel")
-    upright: Parameters = {
+    at_origin: Parameters = {
         ("body incline", "euler"): (0, 0, 0),
         ("body can", "euler"): (0, 0, 0),
         ("body can", "pos"): (0, 0, 0),
     }
-    mjcf_file.write(root, lying_parameters(can) | upright, path)
+    mjcf_file.write(root, lying_parameters(can) | at_origin, path)
     return looks.drawn_spec(root, path, can) if visuals else mjcf_file.parse_spec(root, path)
 
 
@@ -137,7 +137,7 @@ def bob_shares(can: Standing) -> np.ndarray:
     moved = masses * wanted / (1 - wanted)
     pivots = can.pivots() - can.height / 2
     bobs = pivots - can.gravity / can.frequencies() ** 2
-    mass, first, second = can.fixed_moments() - [masses.sum(), masses @ bobs, masses @ bobs**2]
+    mass, first, second = can.total_moments() - [masses.sum(), masses @ bobs, masses @ bobs**2]
     middle = first / mass
     inertia = second - mass * middle**2
     # Without masses d_n at distances r_n from its middle, that part keeps I - sum(d_n r_n^2) less
@@ -187,7 +187,7 @@ def _fixed_liquid(can: Standing, bobs: Pendulums) -> Parameters:
         bobs.masses @ places,
         bobs.masses @ places**2 + bobs.spins.sum(),
     ]
-    mass, first, second = can.fixed_moments() - sloshing
+    mass, first, second = can.total_moments() - sloshing
     level = second - first**2 / mass
     # Nothing drags a liquid along when the can turns about its axis, unless it is solid.
     axial = 1e-9 * level if can.moving_modes else can.mass * can.can.radius**2 / 2
@@ -211,9 +211,10 @@ def lying_parameters(scene: Scene) -> Parameters:
         parameters["joint swing", "damping"] = tuple(scene.damping_law.coefficients)
     across = transverse_inertia(shell)
     parameters |= _inertial("can", shell.mass, 0.0, (across, shell.inertia, across))
-    wide = liquid.mass * shell.radius**2 * segment(liquid.fill).width
-    along = liquid.mass * shell.length**2 / 12
-    inertia = (liquid.inertia - wide + along, liquid.inertia, wide + along)
+    # The integrals of x^2 and y^2 over the mass; y is the axis, and x is level.
+    xx = liquid.mass * shell.radius**2 * segment(liquid.fill).mean_square_across
+    yy = liquid.mass * shell.length**2 / 12
+    inertia = (liquid.inertia - xx + yy, liquid.inertia, xx + yy)
     return parameters | _inertial("load", liquid.mass, -liquid.offset, inertia)
 
 

@@ -137,7 +137,7 @@ def _joint_values(motion: Coordinates) -> dict[str, tuple[np.ndarray, np.ndarray
 
 
 def angle_sums(model: mujoco.MjModel, scene: Scene) -> np.ndarray:
-    """Return the matrix whose product with a state of a scene's model is phi and u/a [rad], shape (nq + nv, 2)."""
+    """Return the matrix M, shape (nq + nv, 2), with which `states @ M` is phi and u/a [rad]."""
     joints = joint_addresses(model)
     sums = np.zeros((model.nq + model.nv, 2))
     for name, place in joints.items():
@@ -150,9 +150,10 @@ def angle_sums(model: mujoco.MjModel, scene: Scene) -> np.ndarray:
 
 
 def state_sizes(model: mujoco.MjModel, scene: Scene) -> np.ndarray:
-    """Return the size of each component of a state, shape (nq + nv,): below it an error counts absolutely.
+    """Return the typical size of each component of a state, shape (nq + nv,).
 
-    Lengths have the radius, angles 1 rad, and their rates these times sqrt(g/a).
+    The error of a component is relative to it, or absolute where the component is smaller. Lengths have the radius,
+    angles 1 rad, and their rates these times sqrt(g/a).
     """
     radius = scene.can.radius
     rate = math.sqrt(scene.gravity / radius) if scene.gravity > 0 else 1.0

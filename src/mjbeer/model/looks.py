@@ -317,7 +317,7 @@ def _prism(outline: np.ndarray, length: float) -> Mesh:
 
 
 def _strip(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Return the faces between two lines of as many vertices."""
+    """Return the faces between two lines with equal numbers of vertices."""
     first = np.stack([one[:-1], one[1:], other[1:]], 1)
     rest = np.stack([one[:-1], other[1:], other[:-1]], 1)
     return np.concatenate([first, rest])

@@ -19,7 +19,7 @@ Parameters: TypeAlias = dict[tuple[str, str], tuple[float, ...] | str]
 
 def read(path: pathlib.Path) -> ET.Element:
     """Return an MJCF file as a new tree, with the files that it includes in place."""
-    root = copy.deepcopy(_parsed(str(path), _text(str(path))))
+    root = copy.deepcopy(_parsed(str(path), _read_bytes(str(path))))
     expand_includes(root, path.parent)
     return root
 
@@ -30,7 +30,7 @@ def content(path: str) -> tuple[bytes, ...]:
     What is made from a file is kept by its content. Time and size are no substitute: an edit may
     leave both as they were. To read a file takes some 5 us.
     """
-    text = _text(path)
+    text = _read_bytes(path)
     included = _included(path, text)
     if not included:
         return (text,)
@@ -40,7 +40,7 @@ def content(path: str) -> tuple[bytes, ...]:
     return tuple(contents)
 
 
-def _text(path: str) -> bytes:
+def _read_bytes(path: str) -> bytes:
     """Return the bytes of a file, by system calls, in half of the time that `open` takes."""
     try:
         descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_BINARY", 0))
@@ -131,7 +131,7 @@ def remove(root: ET.Element, *paths: str) -> None:
 def remove_unused(root: ET.Element, acting: Collection[str], damped: bool) -> None:
     """Remove what is only drawn or measured from a tree, and disable unneeded stages of a step.
 
-    Of the tendons and the actuators those stay whose names are in `acting`.
+    Tendons and actuators stay if their names are in `acting`.
     """
     ET.SubElement(root, "compiler", fusestatic="true", discardvisual="true")
     remove(root, "sensor")
@@ -158,7 +158,7 @@ def compile_spec(spec: mujoco.MjSpec) -> mujoco.MjModel:
     """Return the model that a specification compiles to.
 
     Raises:
-      UnsupportedError: if MuJoCo cannot have such a model.
+      UnsupportedError: if MuJoCo cannot represent such a model.
     """
     try:
         return spec.compile()

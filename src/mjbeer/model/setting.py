@@ -58,7 +58,8 @@ class Setting:
         tolerance = self.tolerance
         if tolerance is not None:
             tolerance = require.positive("tolerance", tolerance, "rad")
-        vars(self).update(
+        require.set_fields(
+            self,
             timestep=require.within("timestep", self.timestep, *require.TIMESTEP, "s"),
             friction=require.within("friction", self.friction, LEAST_FRICTION, math.inf),
             tolerance=tolerance,
@@ -86,8 +87,8 @@ class Setting:
 
 
 def supported(scene: Scene, rolling: str) -> bool:
-    """Return whether MuJoCo can roll a scene in this way: it cannot move a massless body."""
-    return rolling == "reduced" or scene.can.mass > 0 or scene.attachment == "frozen"
+    """Return whether MuJoCo can roll a scene in this way: it cannot move a body without inertia."""
+    return rolling == "reduced" or scene.can.inertia > 0 or scene.attachment == "frozen"
 
 
 def mjcf_folder(given: str | os.PathLike[str] | None = None) -> pathlib.Path:

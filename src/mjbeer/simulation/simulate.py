@@ -68,7 +68,7 @@ def simulate(
 
     Raises:
       ParameterError: if a parameter is not allowed.
-      UnsupportedError: if MuJoCo cannot have such a model.
+      UnsupportedError: if MuJoCo cannot represent such a model.
       TemplateError: if the MJCF is missing, lacks an element, or moves otherwise than theory says.
       DivergenceError: if the motion stops being finite.
       ToleranceError: if the tolerance is not reached.

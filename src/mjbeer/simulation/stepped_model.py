@@ -23,7 +23,7 @@ class SteppedModel:
     """A MuJoCo model of a scene and its data, stepped by one thread at a time.
 
     Raises:
-      UnsupportedError: if MuJoCo cannot have such a model.
+      UnsupportedError: if MuJoCo cannot represent such a model.
     """
 
     def __init__(self, numbers: ModelNumbers) -> None:

@@ -126,7 +126,7 @@ class Load:
     fill: float | None = None
     """Depth divided by the diameter, h/2a of eq. (32), if the load is a circular segment.
 
-    Only drawings depend on it.
+    Only drawings and cans that are free in space (`mjbeer.attach`) depend on it.
     """
 
     def __post_init__(self) -> None:
@@ -198,7 +198,7 @@ class Segment(NamedTuple):
     """Distance of the centroid from the axis [a], eq. (35)."""
     inertia: float
     """Moment of inertia about the centroid per mass [a^2], eq. (37)."""
-    width: float
+    mean_square_across: float
     """Mean square of the distance from the line of symmetry [a^2]."""
 
 
@@ -215,15 +215,16 @@ def segment(fill: float) -> Segment:
     sine_of_twice = 2 * sine * cosine
     area = beta - sine_of_twice / 2
     offset = 2 * sine**3 / (3 * area)
-    # By eq. (36), I_axis = m a^2 (1 + excess)/2, more than that of a full can. I_axis adds the mean
-    # squares of both coordinates; the one across the line of symmetry is (1 - excess)/4.
+    # By eq. (36), I_axis = m a^2 (1 + excess)/2; excess is 0 in a full and in a half-full can, and
+    # negative between. I_axis adds the mean squares of both coordinates; the one across the line of
+    # symmetry is (1 - excess)/4.
     excess = sine_of_twice * sine**2 / (3 * area)
     return Segment(
         half_angle=beta,
         area=area,
         offset=offset,
         inertia=(1 + excess) / 2 - offset**2,
-        width=(1 - excess) / 4,
+        mean_square_across=(1 - excess) / 4,
     )
 
 

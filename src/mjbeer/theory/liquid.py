@@ -8,11 +8,12 @@ The liquid is one lump that lies still in the rolling can. Three things drag it 
 - A thick liquid creeps: it shears everywhere (Stokes).
 - In a can that only swings, wall and ends have the oscillating layers of Stokes.
 
-`_laws` has the formulas, with the slip rate W of can and liquid. One damping is made of them, which
-changes continuously with the incline and the viscosity, and is a polynomial in W, as MuJoCo's is.
-It has the larger torque of layers and creep at the slip rate of steady rolling, or, if a swing of
-about two radians slips faster, the torque of swinging at the rate where both kinds of layers drag
-alike. If steady rolling is slower than a seventh of that rate, the layers of swinging take over.
+`_laws` has the formulas, with the slip rate W of can and liquid. `_fit` makes one damping of them,
+which is a polynomial in W, as MuJoCo's is, and changes continuously with incline and viscosity. It is
+exact at one slip rate, the rate of the fit. This is the rate of steady rolling, where the larger of
+layers and creep counts; or, if that is faster, the rate at which both kinds of layers drag alike,
+which a swing of about two radians has. If steady rolling is slower than a seventh of the latter,
+the torque approaches that of swinging, which is proportional to W.
 
 A real liquid sloshes as well, 1.5 times faster than the lump swings.
 """
@@ -179,11 +180,10 @@ def liquid_in(
     laws = _laws(free, shape, properties)
     steady_rate = _steady_slip_rate(free, laws)
     fitted = _fit(laws, steady_rate)
-    if fitted.curved > 0:
-        _require_laminar(free, shape, properties, fitted.rate)
     film = _film(free, shape, properties)
     quadratic = 0.0
     if fitted.curved > 0:
+        _require_laminar(free, shape, properties, fitted.rate)
         quadratic = fitted.curved * fitted.secant / fitted.rate
     # The less it is curved, the lower the rates for which it is valid: those of creep begin at 0,
     # and end where thin layers would drag as much.

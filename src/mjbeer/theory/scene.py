@@ -292,7 +292,7 @@ class Scene:
         self.equilibrium()
 
     def _steady_rolling(self) -> SteadyRolling:
-        """Return how a can with damping or drag rolls at last.
+        """Return how a can with damping or drag rolls in the end.
 
         Nothing accelerates if T(w)/a + drag u_dot |u_dot| = m_t g sin(alpha), where w = u_dot/a,
         and m g b sin(alpha + phi) = T(w). Without drag T is m_t g a sin(alpha) for any damping.
@@ -412,7 +412,7 @@ def relaxation_rate(scene: Scene, phi: np.ndarray | float, slip_rate: float) -> 
 
 
 def remembers_call(make: Callable[Parameters, Scene]) -> Callable[Parameters, Scene]:
-    """Return the function, so changed that its scenes have it and its arguments as `made_by`."""
+    """Return the function, changed so that each scene has the call that made it as `made_by`."""
     names = tuple(inspect.signature(make).parameters)
 
     @functools.wraps(make)

@@ -164,15 +164,18 @@ class Standing:
         """Return the damping of the modes divided by the critical one, shape (count,).
 
         Thin layers on wall and bottom take the power rho u^2 sqrt(nu omega/2)/2 per area where a
-        mode has the velocity u along them.
+        mode has the velocity u along them. With H = h/R the ratio is
+
+            sqrt(nu/(2 omega))/(2 R)
+            ((xi^2 + 1)/(xi^2 - 1) + 2 xi (1 - H)/sinh(2 xi H)).
         """
         xi = self._xi(count)
         if self.damping_ratio is not None:
             return np.full(len(xi), self.damping_ratio)
         radius = self.can.radius
         depth = self.height / radius
-        inverse_sinh = 2 * np.exp(-2 * xi * depth) / -np.expm1(-4 * xi * depth)  # of 2 xi depth
-        walls = (xi**2 + 1) / (xi**2 - 1) + 2 * xi * (1 - depth) * inverse_sinh
+        cosech = 2 * np.exp(-2 * xi * depth) / -np.expm1(-4 * xi * depth)  # of 2 xi depth
+        walls = (xi**2 + 1) / (xi**2 - 1) + 2 * xi * (1 - depth) * cosech
         layer = np.sqrt(self.viscosity / (2 * self.frequencies(count)))
         return layer / (2 * radius) * walls
 
@@ -197,14 +200,14 @@ class Standing:
             require.within("omega", frequency, 1e-6, 1e6, "rad/s")
         square = np.asarray(omega, float)[..., None] ** 2
         pendulums = self._pendulums(SERIES)
-        share = pendulums.mass * square / (self.gravity / pendulums.length - square)
+        added_mass = pendulums.mass * square / (self.gravity / pendulums.length - square)
         arm = pendulums.bob + self.gravity / square
-        force = np.sum(share, axis=-1)[()]
-        coupling = np.sum(share * arm, axis=-1)[()]
-        moment = np.sum(share * arm**2, axis=-1)[()]
+        force = np.sum(added_mass, axis=-1)[()]
+        coupling = np.sum(added_mass * arm, axis=-1)[()]
+        moment = np.sum(added_mass * arm**2, axis=-1)[()]
         return Reaction(self.mass + force, coupling, self.held_inertia + moment)
 
-    def fixed_moments(self) -> np.ndarray:
+    def total_moments(self) -> np.ndarray:
         """Return the moments of mass of the whole model about the centroid, shape (3,).
 
         They are the zeroth [kg], the first [kg m] and the second one [kg m^2]. The modes left out
@@ -214,8 +217,8 @@ class Standing:
         if self.moving_modes == 0:
             second = self.mass * (self.can.radius**2 / 4 + self.height**2 / 12)
             return np.array([self.mass, 0.0, second])
-        every = self._pendulums(SERIES)
-        fixed = _Pendulums(*(values[self.moving_modes :] for values in every))
+        all_modes = self._pendulums(SERIES)
+        fixed = _Pendulums(*(values[self.moving_modes :] for values in all_modes))
         first = np.sum(fixed.mass * fixed.length)
         second = self.held_inertia + np.sum(fixed.mass * (fixed.pivot**2 - fixed.bob**2))
         return np.array([self.mass, first, second])
