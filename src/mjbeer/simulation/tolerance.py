@@ -27,8 +27,9 @@ ROUNDING = 0.3
 DRIFT = 1.5
 """Error of phi divided by that which the drift of the swing's energy implies: 0.5 for rotations and small swings. For
 swings of 2.85 rad it is up to 2; there the distance of the runs is the larger estimate."""
-MOST_COMPARED = 256
-"""Samples at which two runs are compared, if there are more: an error changes within a part of a swing."""
+MOST_COMPARED = 64
+"""Samples at which two runs are compared, if there are more: to read one off takes as long as an evaluation. Runs with
+few samples are compared at half as many times."""
 
 
 class Solution(NamedTuple):
