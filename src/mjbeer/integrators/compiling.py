@@ -66,7 +66,7 @@ def announced() -> Generator[None]:
         from mjbeer.output import terminal  # takes a tenth of a second to import
 
         if compilations.buffer and (terminal.STDERR.is_terminal or terminal.STDERR.is_jupyter):
-            terminal.say("mjbeer: compiling this integrator for this machine, once: some 3 s")
+            terminal.say("mjbeer: compiling this integrator for this machine, once: some 5 s")
 
     timer = threading.Timer(1.0, notify)
     collects = gc.isenabled()
