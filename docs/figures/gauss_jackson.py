@@ -11,10 +11,11 @@ from mjbeer.exceptions import DivergenceError
 from mjbeer.integrators import Method
 from mjbeer.integrators.dop853 import DOP853
 from mjbeer.integrators.dynamics import Dynamics
-from mjbeer.integrators.gauss_jackson import GaussJackson, SundmanTime, SwingLaw, sundman_time
+from mjbeer.integrators.gauss_jackson import GaussJackson, SundmanTime, sundman_time
 from mjbeer.model.build import build
 from mjbeer.model.joints import initial_state
 from mjbeer.output import plots
+from mjbeer.simulation.methods import swing_law
 from mjbeer.theory.scene import Scene
 
 PHI0 = 1.0
@@ -51,16 +52,7 @@ class Cost(NamedTuple):
 
 def sundman_time_of(scene: Scene) -> SundmanTime:
     """Return the Sundman time that passes as fast as t where the load is let go."""
-    shape = scene.oscillator
-    law = SwingLaw(
-        base=shape.base,
-        chord=shape.chord,
-        coupling=shape.coupling,
-        ramp=shape.ramp,
-        depth=shape.depth,
-        bottom=shape.bottom,
-        arm=scene.load.moment / scene.effective_mass,
-    )
+    law = swing_law(scene)
     return sundman_time(law, law.inertia(PHI0))
 
 

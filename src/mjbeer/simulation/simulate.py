@@ -70,7 +70,7 @@ def simulate(
       ParameterError: if a parameter is not allowed.
       UnsupportedError: if MuJoCo cannot represent such a model.
       TemplateError: if the MJCF is missing, lacks an element, or moves otherwise than theory says.
-      DivergenceError: if the motion stops being finite.
+      DivergenceError: if the motion stops being finite, or the timestep is too long for the method.
       ToleranceError: if the tolerance is not reached.
     """
     require.instance("scene", scene, Scene)

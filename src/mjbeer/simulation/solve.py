@@ -40,7 +40,7 @@ def solve(
     A tolerance has to leave room for the `rounding` [rad] of what is later added to the angles.
 
     Raises:
-      DivergenceError: if the motion stops being finite.
+      DivergenceError: if the motion stops being finite, or the timestep is too long for the method.
       ToleranceError: if the tolerance is not reached; the message says how near the runs came.
     """
     if setting.tolerance is None:
@@ -99,7 +99,7 @@ def _refuse_stiff(scene: Scene, duration: float, tolerance: float) -> None:
         return
     # The weight of can and load, pulling at the rim, drives them apart at most at this rate.
     slip = min(scene.damping_law.rate_at(scene.mass * scene.gravity * scene.can.radius), LARGEST)
-    rate = float(relaxation_rate(scene, np.linspace(0, math.pi, 91), slip).max())  # every two degrees
+    rate = float(relaxation_rate(scene, math.pi, slip))  # where J_f/J is largest
     if rate * duration > _STABLE * EVALUATIONS:
         raise not_reached(
             tolerance,
