@@ -85,7 +85,9 @@ class _Work(NamedTuple):
     """The step that is being taken, and space to work in; the states have shape (nq + nv,)."""
 
     state: np.ndarray  # at the start of the step
-    end: np.ndarray  # the state at its end
+    carry: np.ndarray  # by how much rounding has made that state too large
+    end: np.ndarray  # the state at the end of the step
+    end_carry: np.ndarray  # by how much rounding has made it too large
     stages: np.ndarray  # derivatives at the stages, the begin's first
     output: np.ndarray  # coefficients of the continuous output
     spare: np.ndarray  # a state in between
@@ -95,6 +97,7 @@ class _Place(NamedTuple):
     """Where a run is between two blocks."""
 
     time: float  # [s]
+    time_carry: float  # by how much rounding has made it too large [s]
     step: float  # length of the next step [s]
     sample: int  # index of the next sample
     steps: int  # taken so far
@@ -147,7 +150,9 @@ class DOP853:
         slope = self._dynamics.derivative(start)
         work = _Work(
             state=start.copy(),
+            carry=np.zeros(size),
             end=np.zeros(size),
+            end_carry=np.zeros(size),
             stages=np.zeros((_STAGES, size)),
             output=np.zeros((_COEFFICIENTS, size)),
             spare=np.zeros(size),
@@ -155,6 +160,7 @@ class DOP853:
         work.stages[0] = slope
         place = _Place(
             time=0.0,
+            time_carry=0.0,
             step=self._timestep or self._first_step(start, slope, times[-1]),
             sample=at_start,
             steps=0,
@@ -195,6 +201,7 @@ def _advance(dynamics, tableau, control, work, samples, ends, place):
     state = work.state
     end = work.end
     time = place.time
+    time_carry = place.time_carry
     step = place.step
     sample = place.sample
     steps = place.steps
@@ -210,6 +217,7 @@ def _advance(dynamics, tableau, control, work, samples, ends, place):
         for stage in range(1, _END + 1):
             _evaluate(dynamics, tableau, work, step, stage, end)
         evaluations += _END
+        _end_step(tableau, work, step)
         finite = _is_finite(end)
         error = 0.0
         if control.fixed and not finite:
@@ -231,7 +239,8 @@ def _advance(dynamics, tableau, control, work, samples, ends, place):
                 step *= part
                 continue
         steps += 1
-        end_time = steps * step if control.fixed else time + step
+        added = step - time_carry
+        end_time = steps * step if control.fixed else time + added
         passed = end_time * (1 + ON_TIME)
         while sample < samples.times.size and samples.times[sample] <= passed:
             part = (samples.times[sample] - time) / (end_time - time)
@@ -243,8 +252,10 @@ def _advance(dynamics, tableau, control, work, samples, ends, place):
                     has_output = True
                 _interpolate(work, part, samples.states[sample])
             sample += 1
+        time_carry = (end_time - time) - added
         time = end_time
         write(end, state)
+        write(work.end_carry, work.carry)
         write(work.stages[_END], work.stages[0])
         longest = max(longest, step)
         if row < ends.times.size:
@@ -254,7 +265,7 @@ def _advance(dynamics, tableau, control, work, samples, ends, place):
             remaining = samples.times[samples.times.size - 1] - time
             step = _next_step(control, step, error, error_before, remaining)
             error_before = max(error, _LEAST_ERROR)
-    place = _Place(time, step, sample, steps, error_before, longest)
+    place = _Place(time, time_carry, step, sample, steps, error_before, longest)
     return Block(status, time, evaluations, row, place)
 
 
@@ -271,6 +282,18 @@ def _evaluate(dynamics, tableau, work, step, stage, out):
     for i in range(out.size):
         out[i] = work.state[i] + step * out[i]
     write_derivative(dynamics, out, work.stages[stage])
+
+
+@inlined
+def _end_step(tableau, work, step):
+    """Write the state at the end of the step, less the rounding error that sums carry (Kahan's sum)."""
+    for i in range(work.end.size):
+        rate = 0.0
+        for stage in range(_END):
+            rate += tableau[_END, stage] * work.stages[stage, i]
+        change = step * rate - work.carry[i]
+        work.end[i] = work.state[i] + change
+        work.end_carry[i] = (work.end[i] - work.state[i]) - change
 
 
 @inlined

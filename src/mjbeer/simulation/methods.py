@@ -23,8 +23,6 @@ if TYPE_CHECKING:
 _GOLDEN_SECTION = (math.sqrt(5) - 1) / 2
 """The greater part of a timestep in an uneven run. None of its multiples is near a whole number, so that no rate of
 rotation has the same phase at the ends of both parts."""
-_TOO_NARROW = 40.0
-"""Narrowness of the minimum of J from which on Gauss-Jackson is not tried: the load passes it within one step."""
 _FINER = 1.4
 """Timestep of a run of Gauss-Jackson divided by that of the next, which has 1.4^13 = 79 times less error."""
 _FINER_RUNS = 5
@@ -99,10 +97,8 @@ def swing_law(scene: Scene) -> "SwingLaw":
 
 
 def suits_gauss_jackson(scene: Scene, model: mujoco.MjModel) -> bool:
-    """Return whether Gauss-Jackson can step a model: without constraints and damping, and not of too light a wheel."""
-    swing = scene.oscillator
-    narrowness = max(swing.coupling, swing.chord / 4) / swing.base  # J = base (1 + narrowness phi^2) about phi = 0
-    return not (model.neq or scene.dissipates or narrowness > _TOO_NARROW)
+    """Return whether Gauss-Jackson can step a model: one without constraints and damping."""
+    return not (model.neq or scene.dissipates)
 
 
 def finer_gauss_jackson(

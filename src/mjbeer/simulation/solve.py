@@ -13,10 +13,15 @@ from mjbeer.simulation.methods import finer_dop853, finer_gauss_jackson, fixed_m
 from mjbeer.simulation.recorder import Recorder
 from mjbeer.simulation.stepped_model import SteppedModel
 from mjbeer.simulation.tolerance import SAFETY, Problem, Solution, not_reached, solve_to_tolerance
+from mjbeer.theory.oscillator import Oscillator
 from mjbeer.theory.scene import Scene, relaxation_rate
 
 NUDGE = 4e-14
-"""Distance of the start of a nudged run, in sizes of the components of the state: a hundred times their rounding."""
+"""Distance of the start of a nudged run, in sizes of the components of the state: a hundred times their rounding.
+
+Where J has a narrow minimum, it is the small difference of large numbers, and rounded accordingly: 1 + narrowness times
+as much, over a share of the angle that is 1/sqrt(1 + narrowness). The nudge is larger by the product of the two.
+"""
 SMALLEST = 1e-12
 """Smallest tolerance [rad]: below it the rounding of angles decides."""
 EVALUATIONS = 2_000_000
@@ -71,7 +76,8 @@ def _solve_to_tolerance(
     dynamics = stepped.dynamics
     _refuse_stiff(scene, times[-1], tolerance)
     scale = state_sizes(model, scene)
-    nudged = start + NUDGE * scale * _along_energy(dynamics.derivative(start))
+    nudge = NUDGE * math.sqrt(1 + _narrowness(scene.oscillator))
+    nudged = start + nudge * scale * _along_energy(dynamics.derivative(start))
     problem = Problem(start, nudged, times, tolerance, angle_sums(model, scene))
     if suits_gauss_jackson(scene, model):
         dynamics.most_evaluations = dynamics.evaluations + EVALUATIONS
@@ -81,6 +87,11 @@ def _solve_to_tolerance(
     dynamics.most_evaluations = dynamics.evaluations + EVALUATIONS
     methods = finer_dop853(stepped, tolerance, scale)
     return solve_to_tolerance(methods, problem, lambda: Recorder(model, scene, friction, look_within_steps=True))
+
+
+def _narrowness(swing: Oscillator) -> float:
+    """Return how narrow the minimum of J is: J = base (1 + narrowness phi^2) about phi = 0."""
+    return max(swing.coupling, swing.chord / 4) / swing.base
 
 
 def _along_energy(rates: np.ndarray) -> np.ndarray:

@@ -22,8 +22,9 @@ from mjbeer.integrators.gauss_jackson.weights import CENTRE, COUNT, LAG, POSITIO
 
 LARGEST_TURN = 4.0
 """The largest angle by which phi may turn in a step [rad]."""
-_MOST_POINTS = 12
-"""Largest number of points over which dt/ds is integrated."""
+_MOST_POINTS = 100
+"""Largest number of points at which dt/ds is looked at in a step: so many are needed where a wheel has a thousandth of
+its load's mass."""
 _LARGEST_ELLIPSE = 20.0
 """Largest ellipse that `_points_for` assumes: a larger one would give too few points, as phi is not linear in s
 within a step."""
