@@ -145,7 +145,8 @@ class Dynamics:
 
     def derivative(self, state: np.ndarray) -> np.ndarray:
         """Return the time derivative of a state by MuJoCo's Python binding, called once a run."""
-        qpos, qvel = np.split(state, [self.model.nq])
+        qpos = state[: self.model.nq]
+        qvel = state[self.model.nq :]
         self.data.qpos[:] = qpos * self.kernel_view.used
         self.data.qvel[:] = qvel
         mujoco.mj_forward(self.model, self.data)

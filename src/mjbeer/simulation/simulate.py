@@ -28,8 +28,8 @@ _MOST_STEPS = 1e12
 """Largest number of steps: at half a microsecond each they take a week."""
 _CHECKPOINTS = 4096
 """Number of timesteps, evenly spread over a run, at which a second run is compared with it besides the samples."""
-_PARTS = 32
-"""Number of parts of a run to a tolerance, in each of which its runs are compared at least once."""
+_PARTS = np.arange(33) / 32
+"""Ends of the parts of a run to a tolerance, as shares of it: its runs are compared in each part at least once."""
 
 
 def simulate(
@@ -140,14 +140,16 @@ def integrate(scene: Scene, phi0: float, phi_dot0: float, setting: Setting, time
         solution = solve(stepped, setting, start, checked, rounding=turns_rounding(phi0))
     motion = to_coordinates(stepped.model, scene, solution.states, checked)
     stepped.check(motion)
-    samples = np.searchsorted(checked, times)
-    arrays = {name: array[samples] for name, array in vars(motion).items()}
+    arrays = dict(vars(motion))
+    if checked is not times:
+        samples = np.searchsorted(checked, times)
+        arrays = {name: array[samples] for name, array in arrays.items()}
     turns = phi0 - near_phi0
     if turns != 0:
-        arrays["phi"] += turns
+        arrays["phi"] = arrays["phi"] + turns
         if scene.attachment == "frozen":  # u = a phi, and the can turns with its load
-            arrays["u"] += scene.can.radius * turns
-            arrays["roll"] += turns
+            arrays["u"] = arrays["u"] + scene.can.radius * turns
+            arrays["roll"] = arrays["roll"] + turns
     return Run(
         **arrays,
         scene=scene,
@@ -165,15 +167,19 @@ def integrate(scene: Scene, phi0: float, phi_dot0: float, setting: Setting, time
 def _check_times(setting: Setting, times: np.ndarray) -> np.ndarray:
     """Return increasing times [s] at which a run is compared with another one: its samples, and more in between.
 
-    With a fixed timestep they are up to `_CHECKPOINTS` steps; with a tolerance, `_PARTS` times if samples are few.
+    With a fixed timestep they are up to `_CHECKPOINTS` steps; with a tolerance, the ends of `_PARTS` if samples are few.
     """
     last = times[-1]
     if setting.tolerance is None:
         steps = max(1, int(last / setting.timestep))
         more = setting.timestep * np.linspace(0, steps, min(steps, _CHECKPOINTS) + 1).astype(np.int64)
-    elif (times[1:] - times[:-1]).max(initial=times[0]) > last / _PARTS:
-        more = last * np.linspace(0, 1, _PARTS + 1)
+    elif (times[1:] - times[:-1]).max(initial=times[0]) > last * _PARTS[1]:
+        more = last * _PARTS
     else:
         return times
-    both = np.sort(np.concatenate([times, more[more <= last]]))
-    return both[np.diff(both, prepend=-1.0) > 0]  # unlike union1d this does not import masked arrays
+    both = np.concatenate([times, more[more <= last]])
+    both.sort()
+    is_new = np.empty(len(both), bool)
+    is_new[0] = True
+    is_new[1:] = both[1:] > both[:-1]
+    return both[is_new]  # unlike union1d this does not import masked arrays

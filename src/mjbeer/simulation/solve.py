@@ -100,8 +100,8 @@ def _along_energy(rates: np.ndarray) -> np.ndarray:
     `rates` are the time derivatives of the state: velocities, then accelerations. A move against an acceleration
     raises V, and a larger velocity the kinetic energy.
     """
-    velocities, accelerations = np.split(rates, 2)
-    return np.copysign(1.0, np.concatenate([-accelerations, velocities]))
+    half = len(rates) // 2
+    return np.copysign(1.0, np.concatenate([-rates[half:], rates[:half]]))
 
 
 def _refuse_stiff(scene: Scene, duration: float, tolerance: float) -> None:
