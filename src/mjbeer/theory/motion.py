@@ -461,7 +461,7 @@ class Arc:
         potential = self._oscillator.potential
         phi = potential.rest + past
         if self._landmark == "crest":
-            phi = math.pi + (potential.crest_past_pi + past)
+            phi = potential.phi_at(past)
         return np.sqrt(2 * self._oscillator.inertia(phi) / self._mean_torque(length))
 
     def _mean_torque(self, length: np.ndarray | float) -> np.ndarray:
@@ -519,7 +519,7 @@ class Turns:
     def _speed(self, x: np.ndarray, energy: np.ndarray) -> np.ndarray:
         """Return |phi_dot| [rad/s] at angles `x` past a crest that is passed with `energy` [J]."""
         potential = self._oscillator.potential
-        inertia = self._oscillator.inertia(math.pi + (potential.crest_past_pi + x))
+        inertia = self._oscillator.inertia(potential.phi_at(x))
         return np.sqrt(2 * (energy + potential.below(x)) / inertia)
 
     def time_of(self, launch: Launch) -> float:
@@ -571,6 +571,6 @@ def _rounding_delay(launch: Launch, margin: float, latest: float) -> float:
     # Near a crest x grows as exp(lambda t), with lambda^2 = curvature / J. The load spends a time
     # of about log(1 / margin) / lambda there, which a relative error of the margin changes by that
     # error / lambda. Until `latest` it comes to some 1 + lambda latest crests at most.
-    inertia = float(launch.oscillator.inertia(math.pi + potential.crest_past_pi))
+    inertia = float(launch.oscillator.inertia(potential.phi_at(0.0)))
     crest_time = math.sqrt(inertia / potential.curvature)  # 1 / lambda [s]
     return (curvature_error + margin_error) * (crest_time + latest)
