@@ -179,7 +179,7 @@ class Oscillator:
             math.tau - potential.well,
         )
         low = potential.rest - to_uphill_end
-        high = potential.phi_at(0.0)
+        high = float(potential.phi_at(0.0))
         if self.ramp < 0:
             return -high, -low
         return low, high
