@@ -41,7 +41,8 @@ from numpy.polynomial import legendre
 
 from mjbeer.exceptions import ToleranceError
 from mjbeer.theory.equations import AxisMotion, InitialState, accelerations, slip_rate_of
-from mjbeer.theory.motion import ROUNDINGS, UNCERTAIN, Launch, SwingMotion
+from mjbeer.theory.launch import ROUNDINGS, Launch
+from mjbeer.theory.motion import UNCERTAIN, SwingMotion
 from mjbeer.theory.oscillator import reduced, root
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.travel_time import EPS
