@@ -70,7 +70,7 @@ class Equations:
         if scene.drag > 0:
             corners.append([1.0, 1.0])  # roll_dot
         self.corners = np.reshape(corners, (-1, 2))
-        """A row for each rate that has a corner where it is 0: the factors of phi_dot and w in it."""
+        """A row for each rate that makes a corner at 0: the factors of phi_dot and w in it."""
         self._scene = scene
         self._unit = scene.effective_mass * scene.can.radius**2  # M_e a^2
         self._beta = scene.load.moment / scene.effective_mass / scene.can.radius
