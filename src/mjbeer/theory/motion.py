@@ -190,10 +190,11 @@ def _begin(first: Leg, launch: Launch) -> float:
 
 def _follow_legs(launch: Launch, legs: Iterable[Leg], since: np.ndarray) -> Course:
     """Return the course at times [s] since the first of the `legs` began, as far as they lead."""
-    # The angles of legs are past the rest in a swing, and else past the crest of each turn.
+    # In a swing the angles of legs are past the rest, otherwise past the crest of each turn.
     begin_angle = launch.past_rest if launch.swings else launch.past_crest
     latest = float(np.max(since, initial=0.0))
-    delta_phi = np.full_like(since, math.nan)  # a time on no leg would not go unnoticed
+    # A time on no leg would stay NaN, and not go unnoticed.
+    delta_phi = np.full_like(since, math.nan)
     phi_dot = np.full_like(since, math.nan)
     margin = math.inf
     end = 0.0
@@ -212,12 +213,13 @@ def _follow_legs(launch: Launch, legs: Iterable[Leg], since: np.ndarray) -> Cour
 
 
 def _legs_of_swing(launch: Launch) -> list[Leg]:
-    """Return the two legs of a swing, first that of the start; their angles are past the rest."""
+    """Return the two legs of a swing, that of the start first; their angles are past the rest."""
     margin = -launch.energy_above_next_crest
     if margin == 0:
         raise NoLibrationError("the motion comes to rest on a crest")
-    first = 1 if launch.past_rest >= 0 else -1
-    return [Leg(_arc_of_swing(launch, side), 0, margin) for side in (first, -first)]
+    side = 1 if launch.past_rest >= 0 else -1
+    begin = Leg(_arc_of_swing(launch, side), 0, margin)
+    return [begin, Leg(_arc_of_swing(launch, -side), 0, margin)]
 
 
 def _arc_of_swing(launch: Launch, side: int) -> Arc:
@@ -246,7 +248,8 @@ class TurningPoint(NamedTuple):
 def _turning_point_of_swing(launch: Launch, side: int, to_crest: float) -> TurningPoint:
     """Return the turning point on a side of the rest, with `to_crest` [rad] from rest to crest."""
     potential = launch.potential
-    if launch.kinetic == 0 and side * launch.past_rest > 0:  # the turning point is the start itself
+    is_start = launch.kinetic == 0 and side * launch.past_rest > 0
+    if is_start:
         from_rest = abs(launch.past_rest)
         from_crest = abs(launch.past_crest)
         if from_rest <= from_crest:

@@ -12,7 +12,8 @@ sum loses no digits.
 
 If |ramp| < depth, V has in every turn a minimum, the equilibrium or *rest*, and a maximum, the
 *crest*. `Oscillator` has the coefficients, with J, V and the equation of motion. `Potential`
-describes V about its crest and its rest; only the exact motions need it.
+describes V about its crest and its rest, for equilibria and exact motions; simulations do not need
+it.
 """
 
 import math
