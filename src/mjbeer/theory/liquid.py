@@ -82,6 +82,7 @@ moment of the discs' area."""
 # coefficients varies less. Made exact where the ratio has the mean of its extremes, the polynomial
 # is within 7.85 %.
 _MEAN_RATIO = (2 + (10**0.25 + 10**-0.25)) / 2
+"""Mean of the extremes of that ratio."""
 _QUADRATIC_SHARE = (1 + math.sqrt(1 - 4 / _MEAN_RATIO**2)) / 2
 """Share q of the quadratic term in the torque of that polynomial where it is exact.
 

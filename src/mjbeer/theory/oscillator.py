@@ -233,7 +233,7 @@ class Potential:
         self.held_torque = min(ramp, depth)
         """The part of the ramp's torque that the cosine can hold [N m]."""
         self.excess = ramp - self.held_torque
-        """The rest of it, which is the torque at the crest [N m]; 0 if V has maxima."""
+        """What the cosine cannot hold: the torque at the crest [N m]; 0 if V has maxima."""
         self.curvature = math.sqrt(depth - self.held_torque) * math.sqrt(depth + self.held_torque)
         """V'' at the rest, and -V'' at the crest [J]: sqrt(depth^2 - ramp^2); 0 without a rest."""
         self.lean = math.pi / 2
@@ -285,9 +285,9 @@ class Potential:
     def distances(self, phi: float) -> Distances:
         """Return how far `phi` [rad] of any size is past the crest of its turn and past its rest.
 
-        The rest is that of the well in which `phi` is, which begins and ends at a crest. The nearer
-        of the two is measured; the distance from the other one follows, so that both keep their
-        digits.
+        The rest is that of the well in which `phi` is, which begins and ends at a crest. Of crest
+        and rest, the nearer one is measured, and the distance from the other follows: so both
+        distances keep their digits.
         """
         past_crest = math.remainder(_past_pi(phi) - self.crest_past_pi, math.tau)
         past_rest = math.remainder(reduced(phi) - self.rest, math.tau)
