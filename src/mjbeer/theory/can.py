@@ -248,7 +248,10 @@ class Damping:
     cubic: float = 0.0
     """c3 [N m s^3]."""
     valid_rates: tuple[float, float] | None = field(
-        default=None, compare=False, repr=False, kw_only=True
+        default=None,
+        compare=False,
+        repr=False,
+        kw_only=True,
     )
     """Lowest and highest slip rate [rad/s] at which this is the damping of a real liquid.
 

@@ -191,7 +191,9 @@ def axis_motion(
 
 
 def slip_rate_of(
-    scene: Scene, phi_dot: np.ndarray | float, u_dot: np.ndarray | float
+    scene: Scene,
+    phi_dot: np.ndarray | float,
+    u_dot: np.ndarray | float,
 ) -> np.ndarray | float:
     """Return how much faster a rolling can turns than its load, w = u_dot/a - phi_dot [rad/s]."""
     return u_dot / scene.can.radius - phi_dot

@@ -95,7 +95,11 @@ def sideways_pull(scene: Any, phi: Value, phi_dot: Value, phi_ddot: Value) -> Va
 
 
 def axis_acceleration(
-    scene: Any, phi: Value, phi_dot: Value, phi_ddot: Value, braking: Value
+    scene: Any,
+    phi: Value,
+    phi_dot: Value,
+    phi_ddot: Value,
+    braking: Value,
 ) -> Value:
     """Return u_ddot [m/s^2] of a can with a sliding load and a `braking` force [N]: eq. (46)."""
     pull = sideways_pull(scene, phi, phi_dot, phi_ddot)
@@ -132,7 +136,12 @@ def friction_of_sliding(scene: Any, u_ddot: Value, damping_torque: Value) -> Val
 
 
 def kinetic_energy(
-    scene: Any, phi: Value, phi_dot: Value, u_dot: Value, roll_dot: Value, lift_dot: Value
+    scene: Any,
+    phi: Value,
+    phi_dot: Value,
+    u_dot: Value,
+    roll_dot: Value,
+    lift_dot: Value,
 ) -> Value:
     """Return the kinetic energy [J] of can and load: eqs. (39), (44), with slip and lift added."""
     load_along = u_dot - scene.offset * np.cos(phi) * phi_dot

@@ -198,7 +198,11 @@ class RecordMaker:
         )
         since_start = motion.time - first.time
         expected = equations.axis_motion(
-            record.scene, since_start, motion.phi, motion.phi_dot, start
+            record.scene,
+            since_start,
+            motion.phi,
+            motion.phi_dot,
+            start,
         )
         record.axis_drift = _largest(record.axis_drift, motion.u - expected.u)
 

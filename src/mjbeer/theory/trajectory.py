@@ -329,7 +329,9 @@ def largest_error(
 
 
 def largest_angle_error(
-    angles: np.ndarray, true_angles: np.ndarray, start_angles: np.ndarray | None = None
+    angles: np.ndarray,
+    true_angles: np.ndarray,
+    start_angles: np.ndarray | None = None,
 ) -> float:
     """Return the largest distance [rad] of angles from the true ones.
 
