@@ -60,18 +60,18 @@ def test_the_wall_carries_round_what_moffatt_says() -> None:
     film = [brentq(lambda h, cosine: h - cosine * h**3 / 3 - 2 / 3, 0, 1, args=(c,)) for c in np.cos(angles[1:])]
     assert 2 * np.trapezoid([1.0, *film], angles) == pytest.approx(FILM_LOAD, rel=DIGITS)
     used = liquid_in("olive oil", fill=0.25)
-    thick = math.sqrt(used.viscosity * 0.033 * used.slip / 9.81)
+    thick = math.sqrt(used.viscosity * 0.033 * used.slip_rate / 9.81)
     volume, wet = FILM_LOAD * thick * 0.033 * 0.12, segment(0.25).area * 0.033**2 * 0.12
     assert used.carried == pytest.approx(volume / wet, rel=1e-12)
 
 
 def test_the_fit_is_as_near_as_it_says() -> None:
     used = liquid_in("water")
-    exact_torque = used.damping.torque(used.slip)
+    exact_torque = used.damping.torque(used.slip_rate)
     assert exact_torque == pytest.approx(sliding(density=used.density).mass * 9.81 * 0.033 * math.sin(math.radians(10)))
-    assert used.damping.valid_rates == pytest.approx((0.139 * used.slip, 1.39 * used.slip))
+    assert used.damping.valid_rates == pytest.approx((0.139 * used.slip_rate, 1.39 * used.slip_rate))
     x = np.geomspace(0.139, 1.39, 2001)
-    ratio = used.damping.torque(used.slip * x) / (exact_torque * x**1.5)
+    ratio = used.damping.torque(used.slip_rate * x) / (exact_torque * x**1.5)
     assert abs(ratio - 1).max() == pytest.approx(FIT_ERROR, rel=0.02)  # the ends are rounded to three digits
     assert ratio.min() == pytest.approx(1 - FIT_ERROR, rel=1e-4)
 
@@ -84,7 +84,8 @@ ESTIMATES = [("water", 4.2), ("beer", 3.6), ("olive oil", 0.95), ("honey", 0.04)
 def test_liquids_roll_as_estimated(name: str, speed: float) -> None:
     scene, used = liquid(name), liquid_in(name)
     # Olive oil rolls more slowly than the swing slips for which its law is fitted.
-    assert scene.terminal_speed() == pytest.approx(used.slip * 0.033, rel=FIT_ERROR if name == "olive oil" else 1e-12)
+    accuracy = FIT_ERROR if name == "olive oil" else 1e-12
+    assert scene.terminal_speed() == pytest.approx(used.slip_rate * 0.033, rel=accuracy)
     assert scene.terminal_speed() == pytest.approx(speed, rel=0.15)
     assert used.law == ("creep" if name == "honey" else "thin layers")
 

@@ -1,1 +1,1 @@
-"""The exact theory of the can; it imports NumPy, SciPy and what every room uses, and no simulator."""
+"""The exact theory of the can; it imports NumPy, SciPy and what every room uses, no simulator."""

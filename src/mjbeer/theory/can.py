@@ -87,12 +87,14 @@ class Can:
         length = require.within("can length", length, *require.SIZE, "m")
         thickness = require.positive("sheet thickness", thickness, "m")
         density = require.positive("sheet density", density, "kg/m^3")
-        ring = math.pi * radius * thickness * density  # half of the mass of a wall of length 1
+        # The wall has the mass 2 pi a l thickness density, and each end pi a^2 thickness density.
+        # Their inertias are a^2 and a^2/2 times that.
+        unit = math.pi * radius * thickness * density
         return cls(
             radius,
             length,
-            mass=2 * ring * (length + radius),
-            inertia=ring * radius**2 * (2 * length + radius),
+            mass=2 * unit * (length + radius),
+            inertia=unit * radius**2 * (2 * length + radius),
         )
 
     @classmethod
@@ -245,7 +247,12 @@ class Damping:
     """c2 [N m s^2]."""
     cubic: float = 0.0
     """c3 [N m s^3]."""
-    valid_rates: tuple[float, float] | None = field(default=None, compare=False, repr=False, kw_only=True)
+    valid_rates: tuple[float, float] | None = field(
+        default=None,
+        compare=False,
+        repr=False,
+        kw_only=True,
+    )
     """Lowest and highest slip rate [rad/s] at which this is the damping of a real liquid.
 
     None if it is not that of a liquid.
@@ -286,8 +293,8 @@ class Damping:
         """
         if torque == 0:
             return 0.0
-        # Each term of the polynomial alone would need a higher rate than their sum, which is
-        # convex: Newton's method falls from the lowest of these rates to the solution.
+        # Each term of the polynomial alone would need a higher rate than their sum does. From the
+        # lowest of these rates Newton's method falls to the solution, as the sum is convex.
         rate = math.inf
         for power, coefficient in enumerate(self.coefficients, start=1):
             if coefficient > 0:

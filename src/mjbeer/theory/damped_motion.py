@@ -3,19 +3,7 @@
 **The problem.** Damping and drag take energy, so that the time is no longer an integral over phi,
 as it is in `motion`. The equations are integrated step by step instead.
 
-**The equations** are (46) and (47) with the torque T(w) of the damping and the drag
-d u_dot |u_dot|. The variables are phi, phi_dot and the slip rate w = roll_dot - phi_dot, with
-roll = u/a. Where the damping is strong, w is small, and as a difference it would lose its digits.
-With M_e = m + m_can + I_can/a^2, (46) is divided by M_e a and (47) by M_e a^2. With u_ddot
-eliminated from (47) they are
-
-    roll_ddot = drive - beta (sin(phi) phi_dot^2 - cos(phi) phi_ddot) - braking,
-    j(phi) phi_ddot = -delta sin(phi - bottom) - beta^2 sin(phi) cos(phi) phi_dot^2
-                      + tau(w) - beta cos(phi) braking,
-    braking = tau(w) + kappa roll_dot |roll_dot|,
-
-with drive = m_t g sin(alpha)/(M_e a), beta = m b/(M_e a), tau = T/(M_e a^2), kappa = d a/M_e,
-j = J/(M_e a^2) and delta = depth/(M_e a^2). J, `depth` and `bottom` are those of `Oscillator`.
+**The equations** are those of `damped_equations`, for phi, phi_dot and the slip rate w.
 
 **The method.** In each step, phi_dot and w are polynomials in x = -1 to 1 that obey the equations
 at the Radau points. This method, Radau IIA with 24 stages, has the order 47. It is L-stable: a
@@ -23,8 +11,8 @@ fast decay takes small steps only as long as it lasts. (E. Hairer and G. Wanner,
 Differential Equations II, IV.5.) The coefficients of the polynomials in Legendre's tell whether the
 step is resolved to rounding. The same series give the motion between the ends of the step.
 
-**Corners.** The slopes of w |w|, which a damping may contain, and of roll_dot |roll_dot| have
-corners where w or roll_dot is zero. No polynomial follows them. A step that would pass a corner
+**Corners.** A damping may contain w |w|, and drag contains roll_dot |roll_dot|. The slope of x |x|
+is 2 |x|, which has a corner at x = 0 that no polynomial follows. A step that would pass a corner
 ends there instead.
 
 **Rounding.** The derivatives that Newton's method needs also tell how errors of the start grow.
@@ -40,8 +28,10 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from mjbeer.exceptions import ToleranceError
-from mjbeer.theory.equations import AxisMotion, InitialState, accelerations, slip_rate_of
-from mjbeer.theory.motion import ROUNDINGS, UNCERTAIN, Launch, SwingMotion
+from mjbeer.theory.damped_equations import Equations
+from mjbeer.theory.equations import AxisMotion, InitialState, slip_rate_of
+from mjbeer.theory.launch import ROUNDINGS, Launch
+from mjbeer.theory.motion import UNCERTAIN, SwingMotion
 from mjbeer.theory.oscillator import reduced, root
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.travel_time import EPS
@@ -51,13 +41,13 @@ _STAGES = 24
 _MOST_CORRECTIONS = 6_000
 """Corrections of Newton's method in all: enough for beer that swings 1 rad for 40 s."""
 _MOST_CORRECTIONS_A_STEP = 12
-"""Where Newton's method converges, each correction soon squares the error: a step that needs more than
-these is too long."""
+"""Where Newton's method converges, each correction soon squares the error: a step that needs more
+than these is too long."""
 _DIVERGED = 1e6
 """Size of a correction, relative to the rates, from which Newton's method does not come back."""
 _MOST_GROWTH = 10.0
-"""Largest length of a step divided by that of the last one. It holds where two coefficients are enough:
-so few do not tell how long the next step may be."""
+"""Largest length of a step divided by that of the last one. It holds where two coefficients are
+enough: so few do not tell how long the next step may be."""
 _CAUTION = 0.95
 """Length of the next step divided by that at which all coefficients would be needed."""
 _ANGLES = [0, 3]
@@ -84,109 +74,6 @@ def solve(scene: Scene, time: np.ndarray, start: InitialState) -> tuple[SwingMot
     swing = SwingMotion(start.phi + samples.delta_phi, samples.phi_dot)
     roll_dot = samples.phi_dot + samples.slip_rate
     return swing, AxisMotion(start.u + radius * samples.delta_roll, radius * roll_dot)
-
-
-# The equations and their derivatives
-
-
-class Accelerations(NamedTuple):
-    """phi_ddot and w_dot in a state, or in several at once."""
-
-    values: np.ndarray
-    """phi_ddot and w_dot [rad/s^2], of shape (2, ...)."""
-    jacobian: np.ndarray
-    """Their derivatives by phi, phi_dot and w, of shape (2, 3, ...)."""
-
-
-class Equations:
-    """The equations of a scene."""
-
-    def __init__(self, scene: Scene) -> None:
-        self.swing_rate = math.sqrt(scene.oscillator.depth / scene.oscillator.base)
-        """Frequency of the load's swings [rad/s], about."""
-        corners = []
-        if scene.damping_law.quadratic > 0:
-            corners.append([0.0, 1.0])  # w
-        if scene.drag > 0:
-            corners.append([1.0, 1.0])  # roll_dot
-        self.corners = np.reshape(corners, (-1, 2))
-        """A row for each rate with a corner where it is 0: the factors of phi_dot and w in it."""
-        self._scene = scene
-        self._unit = scene.effective_mass * scene.can.radius**2  # M_e a^2
-        self._beta = scene.load.moment / scene.effective_mass / scene.can.radius
-        self._kappa = scene.drag * scene.can.radius / scene.effective_mass
-        self._delta = scene.oscillator.depth / self._unit
-
-    def accelerations(self, phi: np.ndarray, phi_dot: np.ndarray, slip_rate: np.ndarray) -> Accelerations:
-        """Return phi_ddot and w_dot [rad/s^2], and their derivatives by phi, phi_dot and w.
-
-        With c = beta cos(phi) and s = beta sin(phi) the equations are
-
-            j phi_ddot = -delta sin(phi - bottom) - s c phi_dot^2 + tau - c braking,
-            roll_ddot = drive - s phi_dot^2 + c phi_ddot - braking.
-
-        J is constant but for (m b sin(phi))^2/M_e, so that j is constant but for s^2. With the
-        names `tau_by_w` for the derivative of tau and `drag_by_roll_dot` = 2 kappa |roll_dot| for
-        that of kappa roll_dot |roll_dot|, where roll_dot = phi_dot + w, the derivatives are
-
-            of           c    s    j        tau         braking
-            by phi      -s    c    2 s c    0           0
-            by phi_dot   0    0    0        0           drag_by_roll_dot
-            by w         0    0    0        tau_by_w    tau_by_w + drag_by_roll_dot
-
-        The product rule on the first equation gives
-
-            j phi_ddot_by_phi + 2 s c phi_ddot
-                = -delta cos(phi - bottom) - (c^2 - s^2) phi_dot^2 + s braking,
-            j phi_ddot_by_phi_dot = -2 s c phi_dot - c drag_by_roll_dot,
-            j phi_ddot_by_w = tau_by_w - c (tau_by_w + drag_by_roll_dot).
-
-        From the second one, w_dot = roll_ddot - phi_ddot is
-
-            w_dot = drive - s phi_dot^2 - braking - (1 - c) phi_ddot,
-
-        and has the derivatives
-
-            w_dot_by_phi = -c phi_dot^2 - s phi_ddot - (1 - c) phi_ddot_by_phi,
-            w_dot_by_phi_dot = -2 s phi_dot - drag_by_roll_dot - (1 - c) phi_ddot_by_phi_dot,
-            w_dot_by_w = -tau_by_w - drag_by_roll_dot - (1 - c) phi_ddot_by_w.
-        """
-        scene = self._scene
-        oscillator = scene.oscillator
-        radius = scene.can.radius
-        j = oscillator.inertia(phi) / self._unit
-        c = self._beta * np.cos(phi)
-        s = self._beta * np.sin(phi)
-        gap = 1 - c
-        square = phi_dot * phi_dot
-        roll_dot = phi_dot + slip_rate
-        u_ddot, phi_ddot = accelerations(scene, phi, phi_dot, radius * roll_dot, slip_rate)
-        w_dot = u_ddot / radius - phi_ddot
-
-        tau_by_w = scene.damping_law.derivative(slip_rate) / self._unit
-        drag_by_roll_dot = 2 * self._kappa * np.abs(roll_dot)
-        tau = scene.damping_law.torque(slip_rate) / self._unit
-        braking = tau + drag_by_roll_dot * roll_dot / 2
-
-        right_by_phi = -self._delta * np.cos(phi - oscillator.bottom)
-        right_by_phi += s * braking - (c * c - s * s) * square
-        j_by_phi = 2 * s * c
-        phi_ddot_by_phi = (right_by_phi - j_by_phi * phi_ddot) / j
-        phi_ddot_by_phi_dot = (-j_by_phi * phi_dot - c * drag_by_roll_dot) / j
-        phi_ddot_by_w = (gap * tau_by_w - c * drag_by_roll_dot) / j
-
-        w_dot_by_phi = -c * square - s * phi_ddot - gap * phi_ddot_by_phi
-        w_dot_by_phi_dot = -2 * s * phi_dot - drag_by_roll_dot - gap * phi_ddot_by_phi_dot
-        w_dot_by_w = -tau_by_w - drag_by_roll_dot - gap * phi_ddot_by_w
-        return Accelerations(
-            np.array([phi_ddot, w_dot]),
-            np.array(
-                [
-                    [phi_ddot_by_phi, phi_ddot_by_phi_dot, phi_ddot_by_w],
-                    [w_dot_by_phi, w_dot_by_phi_dot, w_dot_by_w],
-                ]
-            ),
-        )
 
 
 # Polynomials on a step, in x = -1 to 1
@@ -358,7 +245,8 @@ def _try_step(equations: Equations, progress: Progress, length: float) -> Trial:
     series = _TO_SERIES @ nodes
     largest = np.maximum(scale, np.abs(stages.rates).max(axis=1))
     sizes = (np.abs(series[:-1]) / largest).max(axis=1)
-    # So many coefficients are more than rounding; the last one that is looked at must not be.
+    # From the number `needed` on, all coefficients that are looked at are only rounding. If none
+    # of them is, the series may go on beyond them, and the step is too long.
     needed = 1 + int(np.max(np.flatnonzero(sizes > 1e-14), initial=0))
     if needed == _STAGES:
         return Trial(corrections, length / 2, None)
@@ -375,18 +263,19 @@ def _share_to_corner(nodes: np.ndarray, corners: np.ndarray) -> float | None:
     `nodes` are phi_dot and w at the start and the stages, of shape (1 + stages, 2); `corners` are
     those of `Equations`.
     """
-    shares = []
     rates = nodes @ corners.T
     # A rate smaller than this has no sign. In trials the rounding of the polynomial was up to
     # 72 eps, and differed between processors, which add in different orders.
     noise = 256 * EPS * np.abs(nodes).sum(axis=1).max()
     signs = np.where(np.abs(rates) > noise, np.sign(rates), 0.0)
+    shares = []
     for sign, series in zip(signs.T, (_TO_SERIES @ rates).T, strict=True):
-        for low, high in itertools.pairwise(np.flatnonzero(sign)):
-            if sign[low] != sign[high]:
-                rising = sign[high] * series
-                x = root(lambda x, c=rising: legendre.legval(x, c), _NODES[low], _NODES[high])
-                shares.append((1 + x) / 2)
+        for before, after in itertools.pairwise(np.flatnonzero(sign)):
+            if sign[before] == sign[after]:
+                continue
+            rising = sign[after] * series
+            x = root(lambda x, c=rising: legendre.legval(x, c), _NODES[before], _NODES[after])
+            shares.append((1 + x) / 2)
     # A corner nearer than this to an end may stay inside: the torque beside it is the square of
     # that share, or less.
     return min((share for share in shares if 1e-6 < share < 1 - 1e-6), default=None)

@@ -1,8 +1,8 @@
-"""The equations of motion of a scene: its accelerations, the forces of the incline, and its energy along a motion.
+"""The equations of motion of a scene: its accelerations, the forces of the incline, its energy.
 
-The accelerations are those of eqs. (46) and (47), with damping and drag added. The normal force N and the friction
-force F of the incline follow from them. If N < 0 the incline would have to pull at the can, and if |F| > mu N the can
-would slip. The formulas themselves are in `formulas`.
+The accelerations are those of eqs. (46) and (47), with damping and drag added. The normal force N
+and the friction force F of the incline follow from them. If N < 0 the incline would have to pull at
+the can, and if |F| > mu N the can would slip. The formulas themselves are in `formulas`.
 """
 
 import math
@@ -23,9 +23,13 @@ class Coordinates:
     time: np.ndarray
     """Time [s]."""
     u: np.ndarray
-    """Place of the axis along the incline [m], positive downhill; at time 0 as `Scene.initial_axis` says."""
+    """Place of the axis along the incline [m], positive downhill.
+
+    At time 0 it is as `Scene.initial_axis` says."""
     phi: np.ndarray
-    """Angle of the load [rad]: 0 where its centre of mass is nearest to the incline; it grows as a can rolls down."""
+    """Angle of the load [rad]: 0 where its centre of mass is nearest to the incline.
+
+    It grows with the roll of a can that rolls down with a frozen load."""
     u_dot: np.ndarray
     """Velocity of the axis down the incline [m/s]."""
     phi_dot: np.ndarray
@@ -42,7 +46,8 @@ class Coordinates:
 
 def select_samples(motion: Coordinates, samples: np.ndarray | list[int] | slice) -> Coordinates:
     """Return some of the samples of a motion."""
-    return Coordinates(**{name: getattr(motion, name)[samples] for name in Coordinates.__dataclass_fields__})
+    names = Coordinates.__dataclass_fields__
+    return Coordinates(**{name: getattr(motion, name)[samples] for name in names})
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +61,10 @@ class Forces:
 
     @property
     def needed_friction(self) -> np.ndarray:
-        """Return the friction coefficient |F|/N that rolling needs; infinite where the incline would have to pull."""
+        """Return the friction coefficient |F|/N that rolling needs.
+
+        It is infinite where the incline would have to pull.
+        """
         ratio = np.full_like(self.normal, np.inf)
         return np.divide(np.abs(self.friction), self.normal, out=ratio, where=self.normal > 0)
 
@@ -107,8 +115,13 @@ def accelerations(
 ) -> Accelerations:
     """Return the accelerations of rolling without slipping.
 
-    The state is `phi` [rad], `phi_dot` [rad/s] and `u_dot` [m/s], of which the last matters to damping and drag alone.
-    Give the `slip_rate` u_dot/a - phi_dot [rad/s] where it has more digits than the difference.
+    The state is `phi` [rad], `phi_dot` [rad/s] and `u_dot` [m/s], of which the last matters to
+    damping and drag alone. Give the `slip_rate` u_dot/a - phi_dot [rad/s] where it has more digits
+    than the difference.
+
+    With the damping's torque T and the force D of the air, the right side of eq. (46) has
+    -(T/a + D), the `braking`, besides, and that of eq. (47) has T. Where u_ddot in eq. (47) is
+    replaced by eq. (46), the braking adds -(m b cos(phi)/M_e) (T/a + D) to it.
     """
     if scene.attachment == "frozen":
         phi_ddot = scene.oscillator.acceleration(phi, phi_dot)
@@ -116,8 +129,6 @@ def accelerations(
     torque = 0.0
     braking = 0.0
     if scene.dissipates:
-        # The damping's torque T and the drag D act beside the forces of eqs. (46) and (47). With u_ddot eliminated by
-        # eq. (46) they turn phi by T - (m b cos(phi) / M_e) (T / a + D).
         if slip_rate is None:
             slip_rate = slip_rate_of(scene, phi_dot, u_dot)
         damping = scene.damping_law.torque(slip_rate)
@@ -142,7 +153,10 @@ class InitialState(NamedTuple):
 
 
 def initial_state(scene: Scene, phi0: float, phi_dot0: float) -> InitialState:
-    """Return the state of a start at `phi0` [rad] with `phi_dot0` [rad/s], where `Scene.initial_axis` has the axis."""
+    """Return the state of a start at `phi0` [rad] with `phi_dot0` [rad/s].
+
+    `Scene.initial_axis` has that of the axis.
+    """
     u0, u_dot0 = scene.initial_axis(phi0, phi_dot0)
     return InitialState(phi0, phi_dot0, u0, u_dot0)
 
@@ -159,10 +173,11 @@ class AxisMotion(NamedTuple):
 def axis_motion(
     scene: Scene, time: np.ndarray, phi: np.ndarray, phi_dot: np.ndarray, start: InitialState
 ) -> AxisMotion:
-    """Return the motion of the axis in rolling without damping and drag, from phi at times [s] since the `start`.
+    """Return the motion of the axis without damping and drag, from phi at times [s] since `start`.
 
-    A frozen load has u = a phi, eq. (50). With a sliding load M_e u_dot - m b cos(phi) phi_dot - (m + m_can) g
-    sin(alpha) t is conserved, the integral of eq. (46).
+    A frozen load has u = a phi, eq. (50). A sliding load conserves the integral of eq. (46),
+
+        M_e u_dot - m b cos(phi) phi_dot - m_t g sin(alpha) t.
     """
     if scene.attachment == "frozen":
         return AxisMotion(scene.can.radius * phi, scene.can.radius * phi_dot)
@@ -175,15 +190,22 @@ def axis_motion(
     return AxisMotion(u, u_dot)
 
 
-def slip_rate_of(scene: Scene, phi_dot: np.ndarray | float, u_dot: np.ndarray | float) -> np.ndarray | float:
-    """Return by how much the rolling can turns faster than its load, w = u_dot/a - phi_dot [rad/s]."""
+def slip_rate_of(
+    scene: Scene,
+    phi_dot: np.ndarray | float,
+    u_dot: np.ndarray | float,
+) -> np.ndarray | float:
+    """Return how much faster a rolling can turns than its load, w = u_dot/a - phi_dot [rad/s]."""
     return u_dot / scene.can.radius - phi_dot
 
 
 def rolling_forces(
     scene: Scene, phi: np.ndarray | float, phi_dot: np.ndarray | float, u_dot: np.ndarray | float
 ) -> Forces:
-    """Return N and F [N] that rolling without slipping needs in a state, as `accelerations` takes it."""
+    """Return N and F [N] that rolling without slipping needs in a state.
+
+    The state is that of `accelerations`.
+    """
     numbers = scene_numbers(scene)
     u_ddot, phi_ddot = accelerations(scene, phi, phi_dot, u_dot)
     normal = formulas.normal_force(numbers, phi, phi_dot, phi_ddot)
@@ -194,12 +216,23 @@ def rolling_forces(
 
 
 def potential_energy(scene: Scene, motion: Coordinates) -> np.ndarray:
-    """Return the potential energy [J] of can and load at each sample, 0 with all mass at u = 0 on the axis."""
+    """Return the potential energy [J] of can and load at each sample.
+
+    It is 0 with all mass at u = 0 on the axis.
+    """
     return formulas.potential_energy(scene_numbers(scene), motion.phi, motion.u, motion.lift)
 
 
 def kinetic_energy(scene: Scene, motion: Coordinates) -> np.ndarray:
-    """Return the kinetic energy [J] of can and load at each sample: eqs. (39) and (44), with slip and lift added."""
+    """Return the kinetic energy [J] of can and load at each sample.
+
+    It is that of eqs. (39) and (44), with slip and lift added.
+    """
     return formulas.kinetic_energy(
-        scene_numbers(scene), motion.phi, motion.phi_dot, motion.u_dot, motion.roll_dot, motion.lift_dot
+        scene_numbers(scene),
+        motion.phi,
+        motion.phi_dot,
+        motion.u_dot,
+        motion.roll_dot,
+        motion.lift_dot,
     )

@@ -1,8 +1,9 @@
 """The formulas of a can that rolls without slipping, each written once.
 
-They take numbers and arrays alike: NumPy evaluates them for all samples of a motion, and a compiled loop for one step
-after the other. Angles are in [rad], everything else in SI units. The first argument has the numbers of a scene by
-name; the formulas of the swing alone need only those that an `Oscillator` has, too.
+They take numbers and arrays alike: NumPy evaluates them for all samples of a motion, and a compiled
+loop for one step after the other. Angles are in [rad], everything else in SI units. The first
+argument has the numbers of a scene by name. The first four formulas, those of the swing, need only
+the numbers that an `Oscillator` has, too.
 """
 
 from typing import Any, NamedTuple, TypeAlias
@@ -58,7 +59,8 @@ class SceneNumbers(NamedTuple):
 
 def inertia(swing: Any, phi: Value) -> Value:
     """Return J [kg m^2], the inertia of the swing."""
-    return swing.base + swing.chord * np.sin(phi / 2) ** 2 + swing.coupling * np.sin(phi) ** 2
+    by_chord = swing.chord * np.sin(phi / 2) ** 2
+    return swing.base + by_chord + swing.coupling * np.sin(phi) ** 2
 
 
 def swing_energy(swing: Any, phi: Value, phi_dot: Value) -> Value:
@@ -67,7 +69,10 @@ def swing_energy(swing: Any, phi: Value, phi_dot: Value) -> Value:
 
 
 def potential_drop(swing: Any, phi: Value, from_phi: Value) -> Value:
-    """Return V(from_phi) - V(phi) [J] without the cancellation of the plain difference."""
+    """Return V(from_phi) - V(phi) [J] without the cancellation of the plain difference.
+
+    A difference of cosines, cos(x) - cos(y), is -2 sin((x + y)/2) sin((x - y)/2).
+    """
     turned = phi - from_phi
     middle = (phi + from_phi) / 2 - swing.bottom
     return swing.ramp * turned - 2 * swing.depth * np.sin(middle) * np.sin(turned / 2)
@@ -76,34 +81,46 @@ def potential_drop(swing: Any, phi: Value, from_phi: Value) -> Value:
 def phi_acceleration(swing: Any, phi: Value, phi_dot: Value, torque: Value) -> Value:
     """Return phi_ddot [rad/s^2], with a `torque` [N m] beside those of inertia and weight.
 
-    It is the equation of motion J phi_ddot + J' phi_dot^2 / 2 + V' = torque; (16) or (52) for a massless can.
+    The equation of motion is J phi_ddot + J' phi_dot^2 / 2 + V' = torque, where J' and V' are
+    derivatives by phi. It is (16) or (52) for a massless can.
     """
-    half_slope = swing.chord / 4 * np.sin(phi) + swing.coupling / 2 * np.sin(2 * phi)
-    weight = swing.ramp - swing.depth * np.sin(phi - swing.bottom)
+    half_slope = swing.chord / 4 * np.sin(phi) + swing.coupling / 2 * np.sin(2 * phi)  # J'/2
+    weight = swing.ramp - swing.depth * np.sin(phi - swing.bottom)  # -V'
     return (weight + torque - half_slope * phi_dot**2) / inertia(swing, phi)
 
 
 def sideways_pull(scene: Any, phi: Value, phi_dot: Value, phi_ddot: Value) -> Value:
-    """Return m d2(b sin(phi))/dt2 [N], with which a load that moves within the can pulls the can downhill."""
+    """Return m d2(b sin(phi))/dt2 [N], with which a load that moves in a can pulls it downhill."""
     return scene.moment * (np.cos(phi) * phi_ddot - np.sin(phi) * phi_dot**2)
 
 
-def axis_acceleration(scene: Any, phi: Value, phi_dot: Value, phi_ddot: Value, braking: Value) -> Value:
-    """Return u_ddot [m/s^2] of a can with a sliding load, against a `braking` force [N]: eq. (46)."""
+def axis_acceleration(
+    scene: Any,
+    phi: Value,
+    phi_dot: Value,
+    phi_ddot: Value,
+    braking: Value,
+) -> Value:
+    """Return u_ddot [m/s^2] of a can with a sliding load and a `braking` force [N]: eq. (46)."""
     pull = sideways_pull(scene, phi, phi_dot, phi_ddot)
     return (scene.total_mass * scene.along - braking + pull) / scene.effective_mass
 
 
 def normal_force(scene: Any, phi: Value, phi_dot: Value, phi_ddot: Value) -> Value:
-    """Return N [N], with which the incline presses on the can; below 0 it would have to pull."""
-    pull = scene.moment * (np.sin(phi) * phi_ddot + np.cos(phi) * phi_dot**2)  # -m d2(b cos(phi))/dt2
-    return scene.total_mass * scene.across + pull
+    """Return N [N], with which the incline presses on the can; below 0 it would have to pull.
+
+    The load is b cos(phi) nearer to the incline than the axis, and its acceleration towards the
+    incline takes m d2(b cos(phi))/dt2 from N.
+    """
+    push = scene.moment * (np.sin(phi) * phi_ddot + np.cos(phi) * phi_dot**2)
+    return scene.total_mass * scene.across + push
 
 
 def friction_of_frozen(scene: Any, phi: Value, phi_dot: Value, phi_ddot: Value) -> Value:
     """Return F [N], positive up the incline, of a can whose load turns with it.
 
-    It is the weight along the incline less mass times acceleration.
+    It is the weight along the incline less mass times acceleration, which is that of the axis for
+    the can, and for the load that of the axis less d2(b sin(phi))/dt2.
     """
     of_axis = scene.total_mass * scene.radius * phi_ddot
     of_load = sideways_pull(scene, phi, phi_dot, phi_ddot)
@@ -118,16 +135,27 @@ def friction_of_sliding(scene: Any, u_ddot: Value, damping_torque: Value) -> Val
     return scene.can_inertia / scene.radius**2 * u_ddot + damping_torque / scene.radius
 
 
-def kinetic_energy(scene: Any, phi: Value, phi_dot: Value, u_dot: Value, roll_dot: Value, lift_dot: Value) -> Value:
-    """Return the kinetic energy [J] of can and load: eqs. (39) and (44), with slip and lift added."""
+def kinetic_energy(
+    scene: Any,
+    phi: Value,
+    phi_dot: Value,
+    u_dot: Value,
+    roll_dot: Value,
+    lift_dot: Value,
+) -> Value:
+    """Return the kinetic energy [J] of can and load: eqs. (39), (44), with slip and lift added."""
     load_along = u_dot - scene.offset * np.cos(phi) * phi_dot
     load_across = lift_dot + scene.offset * np.sin(phi) * phi_dot
-    can = scene.can_mass * (u_dot**2 + lift_dot**2) + scene.can_inertia * roll_dot**2
-    load = scene.load_mass * (load_along**2 + load_across**2) + scene.load_inertia * phi_dot**2
-    return (can + load) / 2
+    load_square = load_along**2 + load_across**2
+    twice_can = scene.can_mass * (u_dot**2 + lift_dot**2) + scene.can_inertia * roll_dot**2
+    twice_load = scene.load_mass * load_square + scene.load_inertia * phi_dot**2
+    return (twice_can + twice_load) / 2
 
 
 def potential_energy(scene: Any, phi: Value, u: Value, lift: Value) -> Value:
-    """Return the potential energy [J] of can and load, 0 with all mass at u = 0 on the axis."""
-    load = scene.moment * (scene.across * np.cos(phi) - scene.along * np.sin(phi))  # m b g cos(alpha + phi)
-    return scene.total_mass * (lift * scene.across - u * scene.along) - load
+    """Return the potential energy [J] of can and load, 0 with all mass at u = 0 on the axis.
+
+    That of the load is lower by m b g cos(alpha + phi).
+    """
+    lower = scene.moment * (scene.across * np.cos(phi) - scene.along * np.sin(phi))
+    return scene.total_mass * (lift * scene.across - u * scene.along) - lower

@@ -1,21 +1,29 @@
 """A can with a real liquid in it: the scene whose damping follows from viscosity and geometry.
 
-The liquid is one lump that lies still in the rolling can. Three things drag it along:
+The liquid is one lump that lies still in the rolling can. With the slip rate W of can and liquid,
+the can drags it along by three laws:
 
-- In a can that rolls on, a thin liquid has layers on the wall and the ends. They begin where the
-  wall enters the liquid and thicken from there (Sakiadis, AIChE J. 7, 221, 1961; von Karman,
-  Z. angew. Math. Mech. 1, 233, 1921).
-- A thick liquid creeps: it shears everywhere (Stokes).
-- In a can that only swings, wall and ends have the oscillating layers of Stokes.
+- *Layers of rolling*, with a torque layers W^1.5: in a can that rolls on, a thin liquid has layers
+  on the wall and the ends. They begin where the wall enters the liquid and thicken from there
+  (Sakiadis, AIChE J. 7, 221, 1961; von Karman, Z. angew. Math. Mech. 1, 233, 1921).
+- *Creep*, with a torque creep W: a thick liquid shears everywhere (Stokes).
+- *Layers of swinging*, with a torque swing W: in a can that only swings, wall and ends have the
+  oscillating layers of Stokes.
 
-`_laws` has the formulas, with the slip rate W of can and liquid. `_fit` makes one damping of them,
-which is a polynomial in W, as MuJoCo's is, and changes continuously with incline and viscosity. It is
-exact at one slip rate, the rate of the fit. This is the rate of steady rolling, where the larger of
-layers and creep counts; or, if that is faster, the rate at which both kinds of layers drag alike,
-which a swing of about two radians has. If steady rolling is slower than a seventh of the latter,
-the torque approaches that of swinging, which is proportional to W.
+`_laws` computes the factors layers, creep and swing. `_fit` replaces the laws with a polynomial in
+W, as MuJoCo's damping is one:
 
-A real liquid sloshes as well, 1.5 times faster than the lump swings.
+1. The polynomial has the right torque at one slip rate, the rate of the fit. There the torque is
+   that of layers of rolling or that of creep, whichever is larger.
+2. The rate of the fit is that of steady rolling or the *swing rate*, whichever is higher. At the
+   swing rate both kinds of layers have the same torque; a swing of about two radians slips as fast.
+3. For layers of rolling, the polynomial follows W^1.5 over a decade of slip rates. Where steady
+   rolling is slower than all of the decade about the swing rate, the can mainly swings. The slower
+   it rolls, the less the polynomial is then curved, down to the straight line of the layers of
+   swinging. So the damping changes continuously with incline and viscosity.
+
+A real liquid sloshes as well: in a half-full can that is held, without viscosity, 1.26 times as
+fast as the lump swings.
 """
 
 import math
@@ -68,26 +76,31 @@ X is the length of wall that the layer covers, and L its width.
 ENDS = 2 * 0.61592
 """Torque of von Karman's layers on two discs, divided by rho sqrt(nu) W^1.5 and by the second
 moment of the discs' area."""
+# The polynomial that follows W^1.5 over a decade is x + x^2, where x is W divided by the decade's
+# geometric mean and goes from 10^-0.5 to 10^0.5. Divided by x^1.5 it is sqrt(x) + 1/sqrt(x). This
+# ratio is 2 in the middle and largest at both ends; that of no other polynomial with non-negative
+# coefficients varies less. Made exact where the ratio has the mean of its extremes, the polynomial
+# is within 7.85 %.
+_MEAN_RATIO = (2 + (10**0.25 + 10**-0.25)) / 2
+"""Mean of the extremes of that ratio."""
+_QUADRATIC_SHARE = (1 + math.sqrt(1 - 4 / _MEAN_RATIO**2)) / 2
+"""Share q of the quadratic term in the torque of that polynomial where it is exact.
+
+There q = x^2/(x + x^2) = x/(1 + x), and q (1 - q) = x/(1 + x)^2 = 1/_MEAN_RATIO^2."""
 DECADE = (0.139, 1.39)
-"""Slip rates, divided by that of the fit, between which the polynomial is within 7.85 % of W^1.5.
+"""The ends of the decade, divided by the slip rate where the polynomial is exact, that of the fit.
 
-At the slip rate of the fit it is exact. No polynomial with non-negative coefficients is better
-in a decade."""
-_CURVED = (1 + math.sqrt(1 - 16 / (2 + 10**0.25 + 10**-0.25) ** 2)) / 2
-"""Share of the quadratic term in the torque of that polynomial at the slip rate of the fit.
-
-With x the slip rate divided by the decade's geometric mean, the polynomial is proportional to
-x + x^2. Divided by x^1.5 that is sqrt(x) + 1/sqrt(x), 2 at x = 1 and largest at both ends."""
+At that rate x = q/(1 - q) = 2.27, and 10^-0.5 and 10^0.5 are 0.139 and 1.39 times as much."""
 _EDGE = 0.03
 """Length beside the edges, divided by a, in which the liquid slips along the wall.
 
-A third or three times of it changes the damping of creep by a quarter."""
+It is a guess; with three times or a third of it the damping of creep changes by a quarter."""
 FILM_LOAD = 4.4427
 """Largest volume of a film that a turning wall carries round, divided by a L sqrt(nu a W/g).
 
 More liquid than that stays below as a pool (Moffatt, J. Mecanique 16, 651, 1977)."""
 _CARRIED = 1 / 3
-"""Share of the liquid that such a film can hold from which on the rest of it is no lump."""
+"""Share of the liquid in such a film, from which on what is left below counts as no lump."""
 _TURBULENT = 1e6
 """Reynolds number of a layer at its end from which on it may be turbulent on any wall."""
 
@@ -103,7 +116,7 @@ class Liquid:
     """Kinematic viscosity nu [m^2/s]."""
     law: str
     """"thin layers", "creep" or "swing": the law with the largest part in the damping."""
-    slip: float
+    slip_rate: float
     """Slip rate of steady rolling by the laws themselves [rad/s]; 0 on level ground."""
     carried: float
     """Share of the liquid that the film on the wall can hold at that rate; 1 or more is all."""
@@ -111,7 +124,7 @@ class Liquid:
 
     def __str__(self) -> str:
         properties = f"{self.name}: {self.density:g} kg/m^3, {self.viscosity:.3g} m^2/s"
-        return f"{properties}, damped by {self.law} at a slip rate of {self.slip:.3g} rad/s"
+        return f"{properties}, damped by {self.law} at a slip rate of {self.slip_rate:.3g} rad/s"
 
 
 @remembers_call
@@ -180,29 +193,17 @@ def liquid_in(
     laws = _laws(free, shape, properties)
     steady_rate = _steady_slip_rate(free, laws)
     fitted = _fit(laws, steady_rate)
-    film = _film(free, shape, properties)
-    quadratic = 0.0
-    if fitted.curved > 0:
+    if fitted.quadratic_share > 0:
         _require_laminar(free, shape, properties, fitted.rate)
-        quadratic = fitted.curved * fitted.secant / fitted.rate
-    # The less it is curved, the lower the rates for which it is valid: those of creep begin at 0,
-    # and end where thin layers would drag as much.
-    lowest = DECADE[0] * fitted.rate * fitted.curved / _CURVED
-    highest = max(DECADE[1] * fitted.rate, (laws.creep / laws.layers) ** 2)
-    damping = Damping(
-        linear=(1 - fitted.curved) * fitted.secant,
-        quadratic=quadratic,
-        valid_rates=(lowest, highest),
-        coating_rate=(_CARRIED / film) ** 2,
-    )
+    film = _film(free, shape, properties)
     return Liquid(
         name,
         properties.density,
         properties.viscosity,
         law=fitted.law,
-        slip=steady_rate,
+        slip_rate=steady_rate,
         carried=film * math.sqrt(steady_rate),
-        damping=damping,
+        damping=_damping(laws, fitted, film),
     )
 
 
@@ -232,7 +233,7 @@ class _Laws(NamedTuple):
 
 
 def _laws(free: Scene, shape: Segment, properties: Properties) -> _Laws:
-    """Return the three laws for the liquid of a scene without damping.
+    """Return the factors of the three laws for the liquid of a scene without damping.
 
     The liquid wets an arc of the wall, 2 beta, and an area of each end whose second moment about
     the axis is S = (I_axis/m) A. Then
@@ -260,49 +261,72 @@ def _laws(free: Scene, shape: Segment, properties: Properties) -> _Laws:
 
 
 def _steady_slip_rate(free: Scene, laws: _Laws) -> float:
-    """Return the slip rate of steady rolling [rad/s]: where the larger law has the torque.
+    """Return the slip rate of steady rolling [rad/s], at which the larger law has the torque.
 
     The torque is m_t g a sin(alpha), but at most m g b, which is all that the load can exert.
     """
     torque = min(abs(free.downhill_weight) * free.can.radius, free.load.moment * free.gravity)
-    return min((torque / laws.layers) ** (2 / 3), torque / laws.creep)
+    by_layers = (torque / laws.layers) ** (2 / 3)
+    by_creep = torque / laws.creep
+    return min(by_layers, by_creep)
 
 
 class _Fit(NamedTuple):
-    """A polynomial with the torque `secant` W (1 - curved + curved W/rate)."""
+    """The polynomial secant W (1 - quadratic_share + quadratic_share W/rate), which is a torque."""
 
     rate: float
     """Slip rate of the fit [rad/s]."""
     secant: float
-    """Torque divided by the slip rate there [N m s]."""
-    curved: float
+    """Torque there divided by that slip rate [N m s]."""
+    quadratic_share: float
     """Share of the quadratic term in that torque."""
     law: str
     """The law with the largest part."""
 
 
 def _fit(laws: _Laws, steady_rate: float) -> _Fit:
-    """Return the polynomial that stands for the laws in a can that rolls steadily at a slip rate.
+    """Return the polynomial that stands for the laws, with the slip rate of steady rolling [rad/s].
 
-    Both kinds of layers drag alike at (swing/layers)^2. A can that hardly rolls is fitted there,
-    the less curved the slower it rolls: a swing's torque is proportional to the slip rate.
+    The head of this file has the rules. The swing rate solves layers W^1.5 = swing W. It is 0 here
+    if the liquid is so thick that creep is larger than swinging.
     """
     swing_rate = 0.0
     if laws.swing > laws.creep:
         swing_rate = (laws.swing / laws.layers) ** 2
     rate = max(steady_rate, swing_rate)
     secant = max(laws.creep, laws.layers * math.sqrt(rate))
-    rolling_share = 1.0
+    rolling = 1.0  # falls to 0 where the can only swings
     if swing_rate > 0:
-        rolling_share = min(1.0, steady_rate / (DECADE[0] * swing_rate))
-    # So that the torque is nowhere less than that of creep:
-    curved = min(_CURVED * rolling_share, 1 - laws.creep / secant)
+        rolling = min(1.0, steady_rate / (DECADE[0] * swing_rate))
+    # The linear term must not be less than creep.
+    most = 1 - laws.creep / secant
+    quadratic_share = min(_QUADRATIC_SHARE * rolling, most)
     law = "creep"
-    if rolling_share < 1:
+    if rolling < 1:
         law = "swing"
     elif secant > laws.creep:
         law = "thin layers"
-    return _Fit(rate, secant, curved, law)
+    return _Fit(rate, secant, quadratic_share, law)
+
+
+def _damping(laws: _Laws, fitted: _Fit, film: float) -> Damping:
+    """Return the damping of a liquid, with the slip rates at which it is valid.
+
+    A polynomial that follows W^1.5 is valid in its decade. The straighter it is, the lower are the
+    rates from which on it is valid, down to 0. Creep ends where layers of rolling have the same
+    torque. `film` is the share of the liquid that a film can hold, divided by sqrt(W).
+    """
+    lowest = DECADE[0] * fitted.rate * fitted.quadratic_share / _QUADRATIC_SHARE
+    highest = max(DECADE[1] * fitted.rate, (laws.creep / laws.layers) ** 2)
+    quadratic = 0.0
+    if fitted.quadratic_share > 0:
+        quadratic = fitted.quadratic_share * fitted.secant / fitted.rate
+    return Damping(
+        linear=(1 - fitted.quadratic_share) * fitted.secant,
+        quadratic=quadratic,
+        valid_rates=(lowest, highest),
+        coating_rate=(_CARRIED / film) ** 2,
+    )
 
 
 def _require_laminar(free: Scene, shape: Segment, properties: Properties, slip_rate: float) -> None:
@@ -326,12 +350,18 @@ def _film(free: Scene, shape: Segment, properties: Properties) -> float:
     return largest_area / (a**2 * shape.area)
 
 
-def lump_warning(name: str, scene: Scene, slip: float, spread: str, turns: float = math.inf) -> str | None:
-    """Return why a liquid that slips by up to `slip` [rad/s] is no lump, in one sentence.
+def lump_warning(
+    name: str,
+    scene: Scene,
+    slip_rate: float,
+    spread: str,
+    turns: float = math.inf,
+) -> str | None:
+    """Return why a liquid is no lump, in one sentence, or None if it is one.
 
-    It is None if the liquid is a lump. `spread` is a text that says where or when
-    `centrifugal_ratio` is more than 1, or empty. The can has turned by so many `turns`: a film
-    grows with the wall that has come up.
+    It slips by up to `slip_rate` [rad/s]. `spread` says where or when `centrifugal_ratio` is more
+    than 1, and is empty if it never is. The can has turned by so many `turns`: a film grows with
+    the wall that has come up.
     """
     if scene.damping_law.valid_rates is None:
         return None
@@ -340,14 +370,15 @@ def lump_warning(name: str, scene: Scene, slip: float, spread: str, turns: float
     if spread:
         exceeds = "the wall's centrifugal acceleration is more than g cos(alpha)"
         reasons.append(f"{spread} {exceeds}, which spreads it round the can")
-    carried = _CARRIED * math.sqrt(slip / scene.damping_law.coating_rate) * min(1.0, turns)
+    # What a film can hold grows as the square root of the slip rate.
+    carried = _CARRIED * math.sqrt(slip_rate / scene.damping_law.coating_rate) * min(1.0, turns)
     if carried > _CARRIED:
         share = f"{100 * carried:.0f} %" if carried < 1 else "all"
-        film = f"at {slip:.3g} rad/s the film on the wall can hold {share} of it"
+        film = f"at {slip_rate:.3g} rad/s the film on the wall can hold {share} of it"
         reasons.append(f"it coats the can: {film}")
-    if not lowest * (1 - 1e-9) <= slip <= highest:
+    if not lowest * (1 - 1e-9) <= slip_rate <= highest:
         rates = f"{lowest:.3g} to {highest:.3g} rad/s between can and liquid"
-        reasons.append(f"the damping is for {rates}, which slips by {slip:.3g} rad/s")
+        reasons.append(f"the damping is for {rates}, which slips by {slip_rate:.3g} rad/s")
     if not reasons:
         return None
     return f"{name} as one lump is an order of magnitude only: {'; '.join(reasons)}"
@@ -356,6 +387,6 @@ def lump_warning(name: str, scene: Scene, slip: float, spread: str, turns: float
 def centrifugal_ratio(scene: Scene, u_dot: np.ndarray | float) -> np.ndarray | float:
     """Return u_dot^2/(a g cos(alpha)) for a speed [m/s].
 
-    It is the centrifugal acceleration at the wall, divided by the weight's towards the incline.
+    It is the centrifugal acceleration at the wall, divided by the part of gravity into the incline.
     """
     return np.square(u_dot) / (scene.can.radius * scene.gravity * math.cos(scene.incline))

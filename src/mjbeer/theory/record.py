@@ -1,4 +1,7 @@
-"""The extremes of a motion over all its steps, and the reasons not to trust the motion that follow from them."""
+"""The extremes of a motion over all its steps, and the reasons not to trust it that follow.
+
+A `RecordMaker` makes a `Record`, and `diagnose` says what the record has against its motion.
+"""
 
 import math
 from dataclasses import dataclass
@@ -12,16 +15,22 @@ from mjbeer.theory.liquid import centrifugal_ratio, lump_warning
 from mjbeer.theory.scene import Scene
 
 ERROR = 1e-2
-"""Largest estimated error of phi and u/a that is trusted [rad], relative beyond 1 rad: half a degree."""
+"""Largest estimated error of phi and u/a that is trusted [rad], relative beyond 1 rad.
+
+It is half a degree."""
 SLIP = 1e-3
 """Largest slip that is trusted, in radii: a milliradian of roll angle."""
 LIFT = 1e-3
 """Largest gap or penetration between can and incline that is trusted, in radii."""
 _SMALL_SWING = 1e-2
-"""Least energy that a drift is compared with, in units of the depth m g b of the well: that of a swing of 0.14 rad."""
+"""Least energy with which a drift is compared, divided by the depth m g b of the well.
+
+It is that of a swing of 0.14 rad."""
 _LEAST_SHARE = 1e-11
-"""Least energy that a change of all energy is compared with, relative to the largest kinetic energy of all that moves:
-even a drift of a thousandth of it, 1e-14, is 45 times the rounding of the energy."""
+"""Least energy with which a change of all energy is compared, divided by the kinetic energy.
+
+That is the largest one. Rounding changes all energy by some 2e-16 of it, which is then at most some
+2e-5 of what it is compared with."""
 
 
 @dataclass
@@ -48,8 +57,10 @@ class Record:
     energy_change: float = 0.0
     """Largest change of the total energy [J]; damping and drag change it, too."""
     swing_drift: float = 0.0
-    """Largest integral of the change of the swing's energy J phi_dot^2 / 2 + V over the angle that the load covers,
-    forth and back [J rad]; 0 with damping or drag."""
+    """Largest integral of the error of the swing's energy over the angle covered [J rad].
+
+    The error is the change of J phi_dot^2 / 2 + V since the start, and the angle covered counts
+    forth and back. 0 with damping or drag."""
     axis_drift: float = 0.0
     """Largest distance of the axis from where its momentum has it [m]; 0 with damping or drag."""
     largest_slip_rate: float = 0.0
@@ -72,38 +83,42 @@ class Record:
 
     @property
     def energy_drift(self) -> float:
-        """Return the largest change of the total energy divided by the largest kinetic energy of the swing.
+        """Return the largest change of the total energy divided by the swing's kinetic energy.
 
-        It includes what damping and drag take. For a balanced load it is divided by the largest kinetic energy of all
-        that moves.
+        That is the largest kinetic energy of the swing. For a balanced load it is that of all that
+        moves. The change includes what damping and drag take.
         """
         balanced = self.scene.load.offset == 0
         share = 1.0 if balanced else _LEAST_SHARE
-        return self.energy_change / max(self._least_swing, share * self.kinetic_energy)
+        return self.energy_change / max(self._swing_scale, share * self.kinetic_energy)
 
     @property
     def swing_error(self) -> float:
-        """Return the error of phi [rad], relative beyond 1 rad, that the drift of the swing's energy implies.
+        """Return the error of phi [rad], relative beyond 1 rad, that the swing's energy implies.
 
-        A relative error of the energy is about that of the angle covered meanwhile. With damping or drag there is none.
+        An energy that is off by a share of itself makes phi_dot, and the angle covered meanwhile,
+        off by about that share. Errors of opposite sign cancel. Hence the error of phi is about
+        `swing_drift` divided by the energy. With damping or drag there is none.
         """
-        return self.swing_drift / self._least_swing / max(1.0, self.largest_turn)
+        return self.swing_drift / self._swing_scale / max(1.0, self.largest_turn)
 
     @property
     def axis_error(self) -> float:
-        """Return the error of u/a [rad], relative beyond 1 rad, that the drift of the momentum implies."""
+        """Return the error of u/a [rad], relative beyond 1 rad, that the momentum implies."""
         return self.axis_drift / max(self.scene.can.radius, self.largest_distance)
 
     @property
-    def _least_swing(self) -> float:
-        return max(self.swing_energy, _SMALL_SWING * self.scene.oscillator.depth, np.finfo(float).tiny)
+    def _swing_scale(self) -> float:
+        """Return the energy by which errors of the swing's energy are divided [J]."""
+        least = _SMALL_SWING * self.scene.oscillator.depth
+        return max(self.swing_energy, least, np.finfo(float).tiny)
 
 
 class RecordMaker:
     """Makes the record of a motion that is added in pieces, in the order of time."""
 
     def __init__(self, scene: Scene, friction: float = math.inf) -> None:
-        """Begin the record of a can that slips where rolling needs more than a coefficient of `friction`."""
+        """Begin the record of a can that slips where rolling needs more than `friction`."""
         self.record = Record(scene, friction)
         self._first: Coordinates | None = None
         self._last_phi = math.nan
@@ -119,33 +134,37 @@ class RecordMaker:
     def add_states(self, motion: Coordinates) -> None:
         """Add the next piece of the motion to everything except what rests on forces."""
         record = self.record
-        kinetic = equations.kinetic_energy(record.scene, motion)
-        energy = kinetic + equations.potential_energy(record.scene, motion)
+        scene = record.scene
+        kinetic = equations.kinetic_energy(scene, motion)
+        energy = kinetic + equations.potential_energy(scene, motion)
         if self._first is None:
             self._first = select_samples(motion, [0])
             self._last_phi = float(motion.phi[0])
             self._initial_energy = float(energy[0])
         first = self._first
-        rolled = record.scene.can.radius * (motion.roll - first.roll)
-        oscillator = record.scene.oscillator
-        swing = oscillator.kinetic_energy(motion.phi, motion.phi_dot)
-        covered = np.abs(np.diff(motion.phi, prepend=self._last_phi))
-        self._last_phi = float(motion.phi[-1])
-        record.slip = _largest(record.slip, motion.u - first.u - rolled)
+
+        distance = motion.u - first.u
+        rolled = scene.can.radius * (motion.roll - first.roll)
+        record.slip = _largest(record.slip, distance - rolled)
         record.lift = _largest(record.lift, motion.lift)
         record.largest_turn = _largest(record.largest_turn, motion.phi - first.phi)
-        record.largest_distance = _largest(record.largest_distance, motion.u - first.u)
+        record.largest_distance = _largest(record.largest_distance, distance)
         record.largest_rate = _largest(record.largest_rate, motion.phi_dot)
+
+        swing = scene.oscillator.kinetic_energy(motion.phi, motion.phi_dot)
         record.kinetic_energy = _largest(record.kinetic_energy, kinetic)
         record.swing_energy = _largest(record.swing_energy, swing)
         record.energy_change = _largest(record.energy_change, energy - self._initial_energy)
-        if record.scene.dissipates:
-            self._add_slip(motion)
-        else:
-            self._add_conserved(motion, swing, covered)
 
-    def _add_slip(self, motion: Coordinates) -> None:
-        """Add how can and load slip past each other with damping or drag."""
+        if scene.dissipates:
+            self._add_slip_rate(motion)
+            return
+        self._add_swing_drift(motion, first, swing)
+        if scene.attachment == "sliding":
+            self._add_axis_drift(motion, first)
+
+    def _add_slip_rate(self, motion: Coordinates) -> None:
+        """Add how fast can and load slip past each other with damping or drag."""
         record = self.record
         slip_rate = equations.slip_rate_of(record.scene, motion.phi_dot, motion.u_dot)
         record.largest_slip_rate = _largest(record.largest_slip_rate, slip_rate)
@@ -154,25 +173,50 @@ class RecordMaker:
             if len(spread) > 0:
                 record.no_lump_at = float(motion.time[spread[0]])
 
-    def _add_conserved(self, motion: Coordinates, swing: np.ndarray, covered: np.ndarray) -> None:
-        """Add how the swing's energy and, of a sliding load, the momentum change that should be conserved."""
-        record = self.record
-        first = self._first
-        assert first is not None
-        oscillator = record.scene.oscillator
+    def _add_swing_drift(self, motion: Coordinates, first: Coordinates, swing: np.ndarray) -> None:
+        """Add how the energy of the swing changes, which should be conserved.
+
+        `swing` is its kinetic energy [J].
+        """
+        oscillator = self.record.scene.oscillator
         initial_swing = oscillator.kinetic_energy(first.phi, first.phi_dot)
         change = swing - (initial_swing + oscillator.drop(motion.phi, first.phi))
+        covered = np.abs(np.diff(motion.phi, prepend=self._last_phi))
         drift = self._swing_drift + np.cumsum(change * covered)
+        self._last_phi = float(motion.phi[-1])
         self._swing_drift = float(drift[-1])
-        record.swing_drift = _largest(record.swing_drift, drift)
-        if record.scene.attachment == "sliding":
-            start = InitialState(float(first.phi[0]), float(first.phi_dot[0]), float(first.u[0]), float(first.u_dot[0]))
-            since_start = motion.time - first.time
-            expected = equations.axis_motion(record.scene, since_start, motion.phi, motion.phi_dot, start)
-            record.axis_drift = _largest(record.axis_drift, motion.u - expected.u)
+        self.record.swing_drift = _largest(self.record.swing_drift, drift)
 
-    def add_forces(self, time: np.ndarray, phi: np.ndarray, phi_dot: np.ndarray, u_dot: np.ndarray) -> None:
-        """Add the forces that rolling needs at times [s] in the states there; `u_dot` matters to damping and drag."""
+    def _add_axis_drift(self, motion: Coordinates, first: Coordinates) -> None:
+        """Add how far the axis of a sliding load's can is from where conserved momentum has it."""
+        record = self.record
+        start = InitialState(
+            phi=float(first.phi[0]),
+            phi_dot=float(first.phi_dot[0]),
+            u=float(first.u[0]),
+            u_dot=float(first.u_dot[0]),
+        )
+        since_start = motion.time - first.time
+        expected = equations.axis_motion(
+            record.scene,
+            since_start,
+            motion.phi,
+            motion.phi_dot,
+            start,
+        )
+        record.axis_drift = _largest(record.axis_drift, motion.u - expected.u)
+
+    def add_forces(
+        self,
+        time: np.ndarray,
+        phi: np.ndarray,
+        phi_dot: np.ndarray,
+        u_dot: np.ndarray,
+    ) -> None:
+        """Add the forces that rolling needs at times [s] in the states there.
+
+        `u_dot` matters to damping and drag alone.
+        """
         record = self.record
         forces = equations.rolling_forces(record.scene, phi, phi_dot, u_dot)
         record.lowest_normal = float(np.minimum(record.lowest_normal, forces.normal.min()))
@@ -183,15 +227,20 @@ class RecordMaker:
         if math.isfinite(record.friction):
             margin = np.minimum(margin, record.friction * forces.normal - np.abs(forces.friction))
         if margin.min() < 0:
-            ends = int(np.argmax(margin < 0))
-            after = Margin(float(time[ends]), float(margin[ends]))
-            before = Margin(float(time[ends - 1]), float(margin[ends - 1])) if ends > 0 else self._last_margin
+            index = int(np.argmax(margin < 0))
+            after = Margin(float(time[index]), float(margin[index]))
+            before = self._last_margin
+            if index > 0:
+                before = Margin(float(time[index - 1]), float(margin[index - 1]))
             record.rolling_ends_at = zero_crossing(before, after)
         self._last_margin = Margin(float(time[-1]), float(margin[-1]))
 
 
 class Margin(NamedTuple):
-    """The force by which a can is kept from leaving the incline or from slipping, whichever is less."""
+    """The force by which a can is kept from leaving the incline or from slipping.
+
+    It is the lesser of the two.
+    """
 
     time: float
     """[s]"""
@@ -200,10 +249,14 @@ class Margin(NamedTuple):
 
 
 def zero_crossing(before: Margin, after: Margin) -> float:
-    """Return the time [s] at which the line between two margins vanishes; the later one if there is no earlier one."""
+    """Return the time [s] at which the line between two margins is 0.
+
+    It is that of the later one if there is no earlier one.
+    """
     if not before.time < after.time:
         return after.time
-    return before.time + before.force / (before.force - after.force) * (after.time - before.time)
+    share = before.force / (before.force - after.force)
+    return before.time + share * (after.time - before.time)
 
 
 class Diagnosis(NamedTuple):
@@ -218,7 +271,10 @@ class Diagnosis(NamedTuple):
 
 
 def diagnose(record: Record, rolling: str, friction: float = math.inf) -> Diagnosis:
-    """Return what a record says against its motion; a contact slips at its coefficient of `friction`."""
+    """Return what a record says against its motion.
+
+    A contact slips at its coefficient of `friction`.
+    """
     return Diagnosis(
         solver=failed_checks(record, rolling),
         rolling=rolling_failures(record, rolling, friction),
@@ -227,9 +283,10 @@ def diagnose(record: Record, rolling: str, friction: float = math.inf) -> Diagno
 
 
 def failed_checks(record: Record, rolling: str) -> tuple[str, ...]:
-    """Return the reasons to doubt that the equations of a motion were solved, one sentence for each.
+    """Return the reasons to doubt that the equations of a motion were solved, a sentence each.
 
-    In "contact" the can may slip and part, as `rolling_failures` says, and then friction and impacts take energy.
+    In "contact" the can may slip and part, as `rolling_failures` says. Friction and impacts then
+    take energy, so that a drift tells nothing.
     """
     reasons = _slip_reasons(record)
     if rolling == "contact" and reasons:
@@ -238,8 +295,8 @@ def failed_checks(record: Record, rolling: str) -> tuple[str, ...]:
     if error <= ERROR:
         return reasons
     reason = (
-        f"energy or momentum drift like an error of {error:.3g} rad of phi or u/a (trusted up to {ERROR:g}): "
-        "take a smaller timestep or a better integrator"
+        f"energy or momentum drift like an error of {error:.3g} rad of phi or u/a "
+        f"(trusted up to {ERROR:g}): take a smaller timestep or a better integrator"
     )
     return (*reasons, reason)
 
@@ -247,13 +304,15 @@ def failed_checks(record: Record, rolling: str) -> tuple[str, ...]:
 def rolling_failures(record: Record, rolling: str, friction: float = math.inf) -> tuple[str, ...]:
     """Return where a can did not, or could not, roll without slipping, one sentence for each.
 
-    In "contact" it slips at its coefficient of `friction`, and leaves the incline. Else a real can does so where N < 0.
+    In "contact" it slips at its coefficient of `friction`, and leaves the incline. Otherwise it
+    rolls on where N < 0, and a real can would leave.
     """
     if rolling != "contact":
         if not math.isfinite(record.rolling_ends_at):
             return ()
         at = f"from t = {record.rolling_ends_at:.6g} s"
-        return (f"{at} the incline would have to pull at the can (N < 0): a real one leaves it there",)
+        reason = "the incline would have to pull at the can (N < 0): a real one leaves it there"
+        return (f"{at} {reason}",)
     reasons = _slip_reasons(record)
     if record.needed_friction <= friction:
         return reasons
@@ -262,13 +321,15 @@ def rolling_failures(record: Record, rolling: str, friction: float = math.inf) -
 
 
 def _slip_reasons(record: Record) -> tuple[str, ...]:
+    """Return how far a can slipped, and parted from the incline, where this is too far."""
     reasons = []
     slip = record.slip / record.scene.can.radius
     lift = record.lift / record.scene.can.radius
     if not slip <= SLIP:
         reasons.append(f"the can slips by {slip:.3g} radii (trusted up to {SLIP:g})")
     if not lift <= LIFT:
-        reasons.append(f"the can parts from the incline, or sinks in, by {lift:.3g} radii (trusted up to {LIFT:g})")
+        parts = f"the can parts from the incline, or sinks in, by {lift:.3g} radii"
+        reasons.append(f"{parts} (trusted up to {LIFT:g})")
     return tuple(reasons)
 
 

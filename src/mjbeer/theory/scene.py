@@ -115,10 +115,12 @@ class Scene:
         require.within(name, can.mass, lightest, heaviest, "kg", zero=True)
         largest = require.LARGEST_INERTIA * load.mass * radius**2
         require.within("load inertia", load.inertia, 0, largest, "kg m^2")
-        lowest = self.oscillator.base  # J at phi = 0
-        sideways = lowest + self.oscillator.chord / 2 + self.oscillator.coupling  # J at pi/2
-        # With a can of the smallest mass, J is about this many times smaller at phi = 0.
-        if not lowest > sideways / (2 * require.RATIO[1]):
+        swing = self.oscillator
+        inertia_at_0 = swing.base
+        inertia_at_right_angle = swing.base + swing.chord / 2 + swing.coupling
+        # With a point load that slides, their ratio is K/(m + K), with K = m_can + I_can/a^2. It is
+        # a thousandth for the lightest can, and less than half of that only for a massless one.
+        if not inertia_at_0 > inertia_at_right_angle / (2 * require.RATIO[1]):
             raise ParameterError(
                 "next to nothing resists rotation at phi = 0: a point load needs an offset and "
                 f"a can with mass, got {load!r} and {can!r}"
@@ -133,11 +135,11 @@ class Scene:
                 "a frozen load moves as one with its can: damping and drag must be 0, "
                 f"got damping={damping} and drag={drag}"
             )
-        # A slower decay cannot be observed. At phi = pi the load resists least.
-        slowest = 1e-12  # [1/s], at 1 rad/s
-        fastest = 1e9
+        # These are rates of decay at 1 rad/s. At phi = pi the load resists damping least.
         of_damping = float(relaxation_rate(self, math.pi, 1.0))
         of_drag = 2 * self.drag * self.can.radius / self.effective_mass
+        slowest = 1e-12  # [1/s]; a slower decay cannot be observed
+        fastest = 1e9
         require.within("rate of damping", of_damping, slowest, fastest, "1/s", zero=True)
         require.within("rate of drag", of_drag, slowest, fastest, "1/s", zero=True)
 
@@ -225,12 +227,14 @@ class Scene:
     def largest_incline(self) -> float:
         """Return the largest incline with an equilibrium [rad]: the text below eq. (53).
 
-        It is pi/2 for a sliding load without damping and drag. With damping it is the largest one
-        with steady rolling, which is that of a frozen load, and larger with drag.
+        It is pi/2 for a sliding load without damping and drag. For a frozen load, and for steady
+        rolling with damping, it is the one on which the load's centre of mass is level with the
+        axis: its torque is then the largest, and m_t g a sin(alpha) = m g b. With drag it is
+        larger, as the air holds drag u_dot^2 of the weight along the incline, m_t g sin(alpha).
         """
         if self.attachment == "sliding" and not self.dissipates:
             return math.pi / 2
-        # b/a times a ratio of masses, in an order of operations that rounds to 1 at most:
+        # m b/(m_t a), in an order of operations that rounds to 1 at most:
         sine = self.load.moment / (self.mass * self.can.radius)
         if self.drag > 0 and self.gravity > 0:
             slip_rate = self.damping_law.rate_at(self.load.moment * self.gravity)
@@ -308,7 +312,7 @@ class Scene:
         radius = self.can.radius
         torque = self.downhill_weight * radius
         linear, quadratic, cubic = self.damping_law.coefficients
-        # The drag's torque about the line of contact, drag a^3 w |w|, is one of quadratic damping.
+        # Times a, the equation is T(w) + drag a^3 w |w| = torque: drag adds to quadratic damping.
         slip_rate = Damping(linear, quadratic + self.drag * radius**3, cubic).rate_at(torque)
         if self.drag > 0:
             torque = float(self.damping_law.torque(slip_rate))

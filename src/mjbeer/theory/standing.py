@@ -1,9 +1,10 @@
 """A standing can with liquid in it: the slosh of its free surface, in the exact linear theory.
 
-The liquid has no viscosity, a radius R and a height h. Its modes vary as J1(xi r/R) cos(angle) with
-J1'(xi) = 0. Each acts on the can like a pendulum, the rest like a rigid body. Heights z are above
-the centroid of the liquid at rest. (H. N. Abramson, ed., "The Dynamic Behavior of Liquids in Moving
-Containers", NASA SP-106, 1966, chapters 2 and 6.)
+The liquid has no viscosity, a radius R and a height h. Each zero xi of J1' has a mode, which varies
+as J1(xi r/R) cos(angle). A mode acts on the can like a pendulum. What the pendulums leave of the
+liquid acts like a rigid body. Heights z are above the centroid of the liquid at rest.
+(H. N. Abramson, ed., "The Dynamic Behavior of Liquids in Moving Containers", NASA SP-106, 1966,
+chapters 2 and 6.)
 """
 
 import functools
@@ -210,9 +211,11 @@ class Standing:
     def total_moments(self) -> np.ndarray:
         """Return the moments of mass of the whole model about the centroid, shape (3,).
 
-        They are the zeroth [kg], the first [kg m] and the second one [kg m^2]. The modes left out
-        are fixed at their pivots, as in slow motion: they add sum(m_n L_n) to the first moment and
-        sum(m_n (p_n^2 - z_n^2)) to the second. If no mode moves, the liquid is a solid cylinder.
+        They are the zeroth [kg], the first [kg m] and the second one [kg m^2]. The model leaves out
+        the modes after `moving_modes`. Motion is slow for them: their bobs hang straight down, and
+        act on the can as masses at their pivots, at heights p_n instead of z_n. This adds
+        sum(m_n L_n) to the first moment and sum(m_n (p_n^2 - z_n^2)) to the second. If no mode
+        moves, the liquid is a solid cylinder.
         """
         if self.moving_modes == 0:
             second = self.mass * (self.can.radius**2 / 4 + self.height**2 / 12)
@@ -235,9 +238,10 @@ class Standing:
         height = self.height
         xi = self._xi(count)
         tanh = np.tanh(xi * height / radius)
+        tanh_of_half = np.tanh(xi * height / (2 * radius))
         return _Pendulums(
             mass=self.mass * 2 * radius * tanh / (height * xi * (xi**2 - 1)),
-            bob=height / 2 - 2 * radius / xi * np.tanh(xi * height / (2 * radius)),
+            bob=height / 2 - 2 * radius / xi * tanh_of_half,
             length=radius / (xi * tanh),
         )
 

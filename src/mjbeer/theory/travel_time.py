@@ -45,9 +45,13 @@ _BEFORE_TAIL = slice(-12, -3)
 """The nine before them. The tail is noise if it has not fallen to `_FALL` of these."""
 _FALL = 0.1
 _RESOLVED = 3e-15
-"""Largest tail of a resolved series, relative to its largest coefficient: 13.5 eps, found in trials."""
+"""Largest tail of a resolved series, relative to its largest coefficient.
+
+It is 13.5 eps, found in trials."""
 _PANEL_NOISE = 16 * EPS
-"""The same of a tail that is noise, if psi had no more rounding than the panel is wide; found in trials."""
+"""Largest tail of noise, relative to the largest coefficient, if psi had no rounding.
+
+Found in trials."""
 
 
 class Panels(NamedTuple):
@@ -146,9 +150,9 @@ def _are_resolved(values: np.ndarray, lows: np.ndarray, halves: np.ndarray) -> n
     coefficients = np.abs(values @ _TO_SERIES)
     size = coefficients.max(axis=1)
     tail = coefficients[:, _TAIL].max(axis=1)
-    # Noise shows as small coefficients that have stopped falling. Rounding of psi changes dt/dpsi
-    # by some eps as often as the panel is narrower than psi, for panels are as wide as dt/dpsi
-    # takes to change by itself.
+    # Noise shows as small coefficients that have stopped falling. Panels are so wide that dt/dpsi
+    # changes by about itself on one of them. Rounding moves psi by eps psi, which is the share
+    # eps psi / half of a panel, and changes dt/dpsi by about that share of itself.
     has_stalled = tail >= _FALL * coefficients[:, _BEFORE_TAIL].max(axis=1)
     noise = _PANEL_NOISE * (1 + (np.abs(lows) + halves) / halves)
     return (tail <= _RESOLVED * size) | (has_stalled & (tail <= noise * size))
