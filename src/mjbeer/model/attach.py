@@ -11,7 +11,7 @@ from mjbeer import require
 from mjbeer.exceptions import ParameterError, UnsupportedError, UntrustedWarning
 from mjbeer.model import looks, mjcf_file
 from mjbeer.model.free import BREAKING, attached_spec, bob_shares
-from mjbeer.model.model_numbers import stiffest
+from mjbeer.model.model_numbers import shortest_time_constant
 from mjbeer.model.setting import MUJOCO_INTEGRATORS
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.standing import MOST_MODES, Standing
@@ -81,7 +81,7 @@ def attach(
     touching = child.geom("can")
     touching.friction[: len(coefficients)] = coefficients
     if isinstance(can, Scene):
-        time_constant = stiffest(_integrator_name(parent.option), parent.option.timestep, contact=True)
+        time_constant = shortest_time_constant(_integrator_name(parent.option), parent.option.timestep, contact=True)
         touching.solref = [time_constant, 1]
     reasons = _spoiling_options(parent.option, can) + _mass_bounds(parent.compiler, child)
     # With options of its own MuJoCo would warn that the child's differ from the parent's.
