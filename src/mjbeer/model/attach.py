@@ -65,13 +65,21 @@ def attach(
     if len(require.samples("pos", pos, "m")) != 3:
         raise ParameterError(f"pos must have 3 numbers, got {require.format_value(pos)}")
     if len(require.samples("quat", quat)) != 4 or not np.any(quat):
-        raise ParameterError(f"quat must have 4 numbers, not all 0, got {require.format_value(quat)}")
+        raise ParameterError(
+            f"quat must have 4 numbers, not all 0, got {require.format_value(quat)}"
+        )
     if parent.body(f"{prefix}can") is not None:
-        raise ParameterError(f"the parent has a can of this prefix already: give another one, got {prefix!r}")
+        raise ParameterError(
+            f"the parent has a can of this prefix already: give another one, got {prefix!r}"
+        )
     require.choice("body", body, ["world"] if free else [there.name for there in parent.bodies])
-    coefficients = np.empty(0) if friction is None else require.samples("friction", np.atleast_1d(friction))
+    coefficients = (
+        np.empty(0) if friction is None else require.samples("friction", np.atleast_1d(friction))
+    )
     if len(coefficients) > 3 or np.any(coefficients < 0):
-        raise ParameterError(f"friction must be 1, 2 or 3 numbers of 0 or more, got {require.format_value(friction)}")
+        raise ParameterError(
+            f"friction must be 1, 2 or 3 numbers of 0 or more, got {require.format_value(friction)}"
+        )
 
     child = attached_spec(can)
     if free:
@@ -81,7 +89,9 @@ def attach(
     touching = child.geom("can")
     touching.friction[: len(coefficients)] = coefficients
     if isinstance(can, Scene):
-        time_constant = shortest_time_constant(_integrator_name(parent.option), parent.option.timestep, contact=True)
+        time_constant = shortest_time_constant(
+            _integrator_name(parent.option), parent.option.timestep, contact=True
+        )
         touching.solref = [time_constant, 1]
     reasons = _spoiling_options(parent.option, can) + _mass_bounds(parent.compiler, child)
     # With options of its own MuJoCo would warn that the child's differ from the parent's.
@@ -98,7 +108,9 @@ def attach(
     return attached
 
 
-def _choose_options(option: mujoco.MjOption, wanted: mujoco.MjOption, can: Standing | Scene) -> None:
+def _choose_options(
+    option: mujoco.MjOption, wanted: mujoco.MjOption, can: Standing | Scene
+) -> None:
     """Change those options of a world that are MuJoCo's defaults to those that a can needs."""
     if option.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL:
         option.cone = wanted.cone
@@ -166,14 +178,20 @@ def refill(model: mujoco.MjModel, can: Standing | Scene, prefix: str = "can-") -
         )
 
 
-def _require_same_can(model: mujoco.MjModel, can: Standing | Scene, prefix: str, spec: mujoco.MjSpec) -> None:
+def _require_same_can(
+    model: mujoco.MjModel, can: Standing | Scene, prefix: str, spec: mujoco.MjSpec
+) -> None:
     """Refuse a model whose can differs in size or parts from the specification of a can."""
-    needed = [name for name in _PARTS if spec.body(name) is not None or spec.joint(name) is not None]
+    needed = [
+        name for name in _PARTS if spec.body(name) is not None or spec.joint(name) is not None
+    ]
     kinds = (mujoco.mjtObj.mjOBJ_BODY, mujoco.mjtObj.mjOBJ_JOINT)
     there = [name for name in _PARTS if any(_has(model, kind, f"{prefix}{name}") for kind in kinds)]
     size = [can.can.radius, can.can.length / 2]  # written to MJCF with 6 digits or more
     has_parts = there == needed
-    if not has_parts or not np.allclose(model.geom(f"{prefix}can").size[:2], size, rtol=1e-6, atol=0):
+    if not has_parts or not np.allclose(
+        model.geom(f"{prefix}can").size[:2], size, rtol=1e-6, atol=0
+    ):
         raise ParameterError(
             f"the model must have a can under the prefix {require.format_value(prefix)} with radius "
             f"and half length {size} m and with {', '.join(needed)}; "
@@ -193,7 +211,9 @@ def _spoiling_options(option: mujoco.MjOption, can: Standing | Scene) -> list[st
     explicit = option.integrator == mujoco.mjtIntegrator.mjINT_RK4
     if isinstance(can, Scene):
         if not explicit:
-            reasons.append("with another integrator than RK4 the error of rolling is of the order of the timestep")
+            reasons.append(
+                "with another integrator than RK4 the error of rolling is of the order of the timestep"
+            )
     else:
         turn = option.timestep * max(can.frequencies(), default=0.0)
         if turn > _LARGEST_TURN:
@@ -204,7 +224,9 @@ def _spoiling_options(option: mujoco.MjOption, can: Standing | Scene) -> list[st
     decay = _fastest_decay(can)
     if explicit and option.timestep * decay > _RK4_STABLE:
         limit = f"{_RK4_STABLE / decay:.2g} s or less"
-        reasons.append(f"with RK4 its damping may diverge at a timestep of {option.timestep:g} s: give {limit}")
+        reasons.append(
+            f"with RK4 its damping may diverge at a timestep of {option.timestep:g} s: give {limit}"
+        )
     gravity = float(np.linalg.norm(option.gravity))
     if not math.isclose(gravity, can.gravity, rel_tol=1e-6):
         reasons.append(f"gravity is {gravity:.6g} m/s^2, and the can is made for {can.gravity:.6g}")
@@ -225,7 +247,9 @@ def _mass_bounds(compiler: mujoco.MjsCompiler, child: mujoco.MjSpec) -> list[str
     }
     for name, value in least.items():
         if getattr(compiler, name) > value:
-            reasons.append(f"{name} raises what is less, from {value:.2g} on, once the world is saved and read again")
+            reasons.append(
+                f"{name} raises what is less, from {value:.2g} on, once the world is saved and read again"
+            )
     return reasons
 
 

@@ -9,7 +9,8 @@ import numpy as np
 from mjbeer import require
 from mjbeer.exceptions import ParameterError, TemplateError, UnsupportedError
 from mjbeer.model import mjcf_file
-from mjbeer.model.build import START, add_start, can_spec, check_both
+from mjbeer.model.build import START, add_start, can_spec
+from mjbeer.model.check import check_drawn, check_file
 from mjbeer.model.mujoco_library import library
 from mjbeer.model.setting import (
     FRICTION,
@@ -65,7 +66,9 @@ def export(
     target = require.path(path)
     phi0, phi_dot0 = require.start(phi0, phi_dot0)
     if target.suffix != ".xml":  # MuJoCo takes a .urdf for URDF, and its MjSpec reads no .mjcf
-        raise ParameterError(f"the name of the MJCF file must end in .xml, got {require.format_value(target.name)}")
+        raise ParameterError(
+            f"the name of the MJCF file must end in .xml, got {require.format_value(target.name)}"
+        )
     portable = require.choice("portable", portable, (True, False))
     require.choice("integrator", integrator, PORTABLE if portable else MUJOCO_INTEGRATORS)
     setting = Setting(rolling, integrator, timestep, friction=friction, mjcf=mjcf)
@@ -77,7 +80,9 @@ def export(
             _remove_breaking_waves(spec)
     else:
         add_start(spec, scene, phi0, phi_dot0)
-        fault = check_both(scene, setting, mjcf_file.compile_spec(spec))
+        fault = check_file(setting.folder, scene.attachment, setting.rolling)
+        if fault is None:
+            fault = check_drawn(mjcf_file.compile_spec(spec), scene, setting)
         if fault is not None:
             raise TemplateError(fault)
         if portable:

@@ -74,7 +74,9 @@ def _read_mechanics(name: str, folder: pathlib.Path) -> tuple[ET.Element, pathli
     root = mjcf_file.read(path)
     edited = mjcf_file.differences(root, _paper_parameters(name))
     if edited:
-        raise TemplateError(f"{path} has numbers of its own in {', '.join(edited)}, into which mjbeer writes a can's")
+        raise TemplateError(
+            f"{path} has numbers of its own in {', '.join(edited)}, into which mjbeer writes a can's"
+        )
     mjcf_file.remove(root, "keyframe")
     return root, path
 
@@ -199,9 +201,13 @@ def lying_parameters(scene: Scene) -> Parameters:
     shell = scene.can
     liquid = scene.load
     if liquid.fill is None:
-        raise UnsupportedError(f"a can that is free in space has beer in it, got a load without a fill: {scene!r}")
+        raise UnsupportedError(
+            f"a can that is free in space has beer in it, got a load without a fill: {scene!r}"
+        )
     if scene.drag > 0:
-        raise UnsupportedError(f"a can that is free in space has no drag of the air, got {scene.drag!r} kg/m")
+        raise UnsupportedError(
+            f"a can that is free in space has no drag of the air, got {scene.drag!r} kg/m"
+        )
     parameters: Parameters = {("geom can", "size"): (shell.radius, shell.length / 2)}
     if scene.attachment == "sliding":
         if shell.inertia == 0:
@@ -226,7 +232,9 @@ def _paper_parameters(name: str) -> Parameters:
     return standing_parameters(standing())
 
 
-def _inertial(body: str, mass: float, height: float, inertia: tuple[float, float, float]) -> Parameters:
+def _inertial(
+    body: str, mass: float, height: float, inertia: tuple[float, float, float]
+) -> Parameters:
     """Return the mass of a body, its centre of mass, and its inertia about x, y and z."""
     element = f"inertial {body}"
     return {

@@ -19,7 +19,9 @@ whether it touches; a can that does not touch falls freely for a step, 5 um at 1
 times this depth."""
 
 
-def reset(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, phi0: float, phi_dot0: float = 0.0) -> None:
+def reset(
+    model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, phi0: float, phi_dot0: float = 0.0
+) -> None:
     """Put the model of a scene at a start, at `phi0` [rad] with `phi_dot0` [rad/s], at time 0.
 
     Your own loop begins with it. Everything else in the `data` is reset, and accelerations and
@@ -36,7 +38,9 @@ def reset(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, phi0: float,
     start = _start_values(scene, phi0, phi_dot0)
     joints = {model.joint(joint).name for joint in range(model.njnt)}
     if not joints & {"phi", "roll"}:
-        raise ParameterError(f"the model must have the joints of a scene, got {require.format_value(sorted(joints))}")
+        raise ParameterError(
+            f"the model must have the joints of a scene, got {require.format_value(sorted(joints))}"
+        )
     mujoco.mj_resetData(model, data)
     for name in joints & start.keys():
         position, rate = start[name]
@@ -74,7 +78,9 @@ def to_states(model: mujoco.MjModel, motion: Coordinates) -> np.ndarray:
     return states
 
 
-def to_coordinates(model: mujoco.MjModel, scene: Scene, states: np.ndarray, times: np.ndarray) -> Coordinates:
+def to_coordinates(
+    model: mujoco.MjModel, scene: Scene, states: np.ndarray, times: np.ndarray
+) -> Coordinates:
     """Return the coordinates of states, shape (samples, nq + nv), at `times` [s], shape
     (samples,)."""
     joints = joint_addresses(model)
@@ -119,7 +125,9 @@ def rolling_coordinates(radius: float, u: Any, u_dot: Any, phi: Any, phi_dot: An
     )
 
 
-def _start_values(scene: Scene, phi0: float, phi_dot0: float) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+def _start_values(
+    scene: Scene, phi0: float, phi_dot0: float
+) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     """Return position and rate at a start of all joints that a model may have, by name."""
     u, u_dot = scene.initial_axis(phi0, phi_dot0)
     return _joint_values(rolling_coordinates(scene.can.radius, u, u_dot, phi0, phi_dot0))
@@ -157,5 +165,7 @@ def state_sizes(model: mujoco.MjModel, scene: Scene) -> np.ndarray:
     """
     radius = scene.can.radius
     rate = math.sqrt(scene.gravity / radius) if scene.gravity > 0 else 1.0
-    sizes = np.array([radius if name in ("slide", "lift") else 1.0 for name in joint_addresses(model)])
+    sizes = np.array(
+        [radius if name in ("slide", "lift") else 1.0 for name in joint_addresses(model)]
+    )
     return np.append(sizes, rate * sizes)

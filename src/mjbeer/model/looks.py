@@ -136,7 +136,9 @@ def _require_elements(spec: mujoco.MjSpec, can: Scene | Standing, folder: pathli
         find = getattr(spec, kind)
         for needed in names:
             if find(needed) is None:
-                raise TemplateError(f"{folder} has no {kind} named {needed!r}, which mjbeer uses; restore it")
+                raise TemplateError(
+                    f"{folder} has no {kind} named {needed!r}, which mjbeer uses; restore it"
+                )
 
 
 def _fit_to_scene(spec: mujoco.MjSpec, scene: Scene) -> None:
