@@ -326,8 +326,10 @@ def _film(free: Scene, shape: Segment, properties: Properties) -> float:
     return largest_area / (a**2 * shape.area)
 
 
-def lump_warning(name: str, scene: Scene, slip: float, spread: str, turns: float = math.inf) -> str | None:
-    """Return why a liquid that slips by up to `slip` [rad/s] is no lump, in one sentence.
+def lump_warning(
+    name: str, scene: Scene, slip_rate: float, spread: str, turns: float = math.inf
+) -> str | None:
+    """Return why a liquid that slips by up to `slip_rate` [rad/s] is no lump, in one sentence.
 
     It is None if the liquid is a lump. `spread` is a text that says where or when
     `centrifugal_ratio` is more than 1, or empty. The can has turned by so many `turns`: a film
@@ -340,14 +342,14 @@ def lump_warning(name: str, scene: Scene, slip: float, spread: str, turns: float
     if spread:
         exceeds = "the wall's centrifugal acceleration is more than g cos(alpha)"
         reasons.append(f"{spread} {exceeds}, which spreads it round the can")
-    carried = _CARRIED * math.sqrt(slip / scene.damping_law.coating_rate) * min(1.0, turns)
+    carried = _CARRIED * math.sqrt(slip_rate / scene.damping_law.coating_rate) * min(1.0, turns)
     if carried > _CARRIED:
         share = f"{100 * carried:.0f} %" if carried < 1 else "all"
-        film = f"at {slip:.3g} rad/s the film on the wall can hold {share} of it"
+        film = f"at {slip_rate:.3g} rad/s the film on the wall can hold {share} of it"
         reasons.append(f"it coats the can: {film}")
-    if not lowest * (1 - 1e-9) <= slip <= highest:
+    if not lowest * (1 - 1e-9) <= slip_rate <= highest:
         rates = f"{lowest:.3g} to {highest:.3g} rad/s between can and liquid"
-        reasons.append(f"the damping is for {rates}, which slips by {slip:.3g} rad/s")
+        reasons.append(f"the damping is for {rates}, which slips by {slip_rate:.3g} rad/s")
     if not reasons:
         return None
     return f"{name} as one lump is an order of magnitude only: {'; '.join(reasons)}"
