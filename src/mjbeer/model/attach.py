@@ -195,7 +195,8 @@ def _require_same_can(
         model.geom(f"{prefix}can").size[:2], size, rtol=1e-6, atol=0
     ):
         raise ParameterError(
-            f"the model must have a can under the prefix {require.format_value(prefix)} with radius "
+            f"the model must have a can under the prefix {require.format_value(prefix)} "
+            "with radius "
             f"and half length {size} m and with {', '.join(needed)}; "
             f"it has {', '.join(there) or 'none'}, "
             f"got {require.format_value(can)}"

@@ -61,7 +61,8 @@ def _read_mechanics(name: str, folder: pathlib.Path) -> tuple[ET.Element, pathli
     edited = mjcf_file.differences(root, _paper_parameters(name))
     if edited:
         raise TemplateError(
-            f"{path} has numbers of its own in {', '.join(edited)}, into which mjbeer writes a can's"
+            f"{path} has numbers of its own in {', '.join(edited)}, "
+            "into which mjbeer writes a can's"
         )
     mjcf_file.remove(root, "keyframe")
     return root, path

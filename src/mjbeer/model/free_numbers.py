@@ -150,7 +150,8 @@ def lying_parameters(scene: Scene) -> Parameters:
     if scene.attachment == "sliding":
         if shell.inertia == 0:
             raise UnsupportedError(
-                "MuJoCo moves no can without inertia around a sliding load: give it some, as can=Can.sheet_metal()"
+                "MuJoCo moves no can without inertia around a sliding load: "
+                "give it some, as can=Can.sheet_metal()"
             )
         parameters["joint swing", "damping"] = tuple(scene.damping_law.coefficients)
     across = transverse_inertia(shell)

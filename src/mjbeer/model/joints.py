@@ -83,19 +83,16 @@ def to_coordinates(
 ) -> Coordinates:
     """Return the coordinates of states, shape (samples, nq + nv), at `times` [s], shape
     (samples,)."""
-    joints = joint_addresses(model)
     radius = scene.can.radius
-
-    def joint_values(name: str) -> np.ndarray:
-        """Return positions and rates of a joint, shape (2, samples); zeros if there is none."""
-        if name not in joints:
-            return np.zeros((2, len(states)))
-        return states.T[joints[name] :: model.nq].copy()
-
-    phi = joint_values("phi") if "phi" in joints else joint_values("roll") + joint_values("swing")
-    u = joint_values("slide") if "slide" in joints else radius * phi
-    roll = joint_values("roll") if "roll" in joints else u / radius
-    lift = joint_values("lift")
+    # Positions, then rates, shape (2, joints, samples); of each joint, shape (2, samples).
+    values = states.T.copy().reshape(2, model.nq, len(states))
+    joints = {name: values[:, place] for name, place in joint_addresses(model).items()}
+    nothing = np.zeros((2, len(states)))
+    swing = joints.get("swing", nothing)
+    phi = joints["phi"] if "phi" in joints else joints["roll"] + swing
+    u = joints["slide"] if "slide" in joints else radius * phi
+    roll = joints["roll"] if "roll" in joints else u / radius
+    lift = joints.get("lift", nothing)
     return Coordinates(
         time=times,
         u=u[0],
@@ -160,8 +157,8 @@ def angle_sums(model: mujoco.MjModel, scene: Scene) -> np.ndarray:
 def state_sizes(model: mujoco.MjModel, scene: Scene) -> np.ndarray:
     """Return the typical size of each component of a state, shape (nq + nv,).
 
-    The error of a component is relative to it, or absolute where the component is smaller. Lengths have the radius,
-    angles 1 rad, and their rates these times sqrt(g/a).
+    The error of a component is relative to it, or absolute where the component is smaller. Lengths
+    have the radius, angles 1 rad, and their rates these times sqrt(g/a).
     """
     radius = scene.can.radius
     rate = math.sqrt(scene.gravity / radius) if scene.gravity > 0 else 1.0

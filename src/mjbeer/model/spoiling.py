@@ -23,13 +23,15 @@ def option_reasons(option: mujoco.MjOption, can: Standing | Scene) -> list[str]:
     if isinstance(can, Scene):
         if not runge_kutta:
             reasons.append(
-                "with another integrator than RK4 the error of rolling is of the order of the timestep"
+                "with another integrator than RK4 "
+                "the error of rolling is of the order of the timestep"
             )
     else:
         turn = option.timestep * max(can.frequencies(), default=0.0)
         if turn > _LARGEST_TURN:
             reasons.append(
-                f"the timestep of {option.timestep:g} s is coarse: the fastest mode turns by {turn:.3g} rad in it, "
+                f"the timestep of {option.timestep:g} s is coarse: "
+                f"the fastest mode turns by {turn:.3g} rad in it, "
                 f"not {_LARGEST_TURN:g} or less"
             )
     decay = fastest_decay(can)
@@ -59,7 +61,8 @@ def mass_reasons(compiler: mujoco.MjsCompiler, child: mujoco.MjSpec) -> list[str
     for name, value in least.items():
         if getattr(compiler, name) > value:
             reasons.append(
-                f"{name} raises what is less, from {value:.2g} on, once the world is saved and read again"
+                f"{name} raises what is less, from {value:.2g} on, "
+                "once the world is saved and read again"
             )
     return reasons
 
