@@ -141,7 +141,7 @@ def digests(folder: pathlib.Path) -> str:
     """Return the SHA-256 of the mechanics files of scenes in a folder, one a line, with their
     names."""
     mechanics = sorted([*folder.glob("mechanics/sliding_*.xml"), *folder.glob("mechanics/frozen_*.xml")])
-    return "".join(f"{digest(mjcf_file.content(str(path)))}  {path.name}\n" for path in mechanics)
+    return "".join(f"{digest(mjcf_file.content(path))}  {path.name}\n" for path in mechanics)
 
 
 def main() -> None:

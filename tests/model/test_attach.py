@@ -23,8 +23,8 @@ from mjbeer import (
     standing,
 )
 from mjbeer.exceptions import MjbeerError, ParameterError, UnsupportedError
-from mjbeer.model import attach as attaching
 from mjbeer.model.mujoco_library import quiet
+from mjbeer.model.spoiling import RK4_STABLE, fastest_decay
 from mjbeer.theory.standing import Standing
 from tests.support.scenes import METAL
 
@@ -139,7 +139,7 @@ def test_the_timestep_that_rk4_is_given_is_the_limit() -> None:
     for can in (standing(modes=3, damping_ratio=0.3), HONEY):
         for share, diverges in ((0.97, False), (1.03, True)):
             spec = mujoco.MjSpec()
-            spec.option.timestep = share * attaching._RK4_STABLE / attaching._fastest_decay(can)
+            spec.option.timestep = share * RK4_STABLE / fastest_decay(can)
             spec.option.integrator = RK4
             if diverges:
                 with pytest.warns(UntrustedWarning, match="its damping may diverge at"):

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 import mjbeer
 from mjbeer import Can, Load, Scene, build, frozen, hoop, pendulum, simulate, sliding
 from mjbeer.exceptions import ParameterError, UnsupportedError
-from mjbeer.model.build import compiled_model, rolling_spec, write_numbers
-from mjbeer.model.compiled_numbers import compiled_views
+from mjbeer.model.build import rolling_spec
+from mjbeer.model.compiled import compiled_model, parameter_views, write_numbers
 from mjbeer.model.joints import joint_addresses, to_coordinates
 from mjbeer.model.model_numbers import ModelNumbers
 from mjbeer.model.setting import MUJOCO_INTEGRATORS, ROLLINGS, MujocoIntegrator, Rolling, Setting, supported
@@ -82,7 +82,7 @@ def written(scene: Scene, setting: Setting) -> mujoco.MjModel:
     made = ModelNumbers(scene, setting)
     model = compiled_model(made)
     data = mujoco.MjData(model)
-    views = compiled_views(model, made.parameters)
+    views = parameter_views(model, made.parameters)
     braked = replace(scene, drag=scene.drag + 1.0, gravity=5.0) if scene.dissipates else replace(scene, incline=0.1)
     for other in (scene, braked, scene):
         if (before := ModelNumbers(other, setting)).structure == made.structure:
@@ -150,7 +150,7 @@ def test_models_with_other_elements_have_another_structure_and_no_others(monkeyp
         == 1
     )
     simulate(sliding(), 0.01, 1.0)
-    monkeypatch.setattr("mjbeer.model.build.rolling_spec", None)
+    monkeypatch.setattr("mjbeer.model.compiled.rolling_spec", None)
     simulate(sliding(fill=0.3), 0.01, 1.0)
 
 

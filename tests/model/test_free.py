@@ -13,7 +13,7 @@ import pytest
 from mjbeer import Can, attach, build, exact, export, frozen, sliding, standing
 from mjbeer.cli.app import main
 from mjbeer.exceptions import ParameterError, TemplateError
-from mjbeer.model import free, looks, setting
+from mjbeer.model import free_numbers, looks, setting
 from mjbeer.studies.validation import standing_checks as measured
 from tests.support.scenes import METAL
 
@@ -27,15 +27,16 @@ def test_a_lying_can_has_the_inertia_of_its_parts(fill: float) -> None:
     spec.add_mesh(name="beer", uservert=vertices.ravel(), userface=faces.ravel(), inertia=exactly)
     spec.worldbody.add_body(name="beer").add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname="beer", density=1000)
     model = spec.compile()
-    inertia = free.lying_parameters(frozen(fill=fill, can=METAL))["inertial load", "diaginertia"]
+    inertia = free_numbers.lying_parameters(frozen(fill=fill, can=METAL))["inertial load", "diaginertia"]
     # The mesh is a polygon of 256 edges, and short of the circle by 6e-4.
     assert np.sort(inertia) == pytest.approx(np.sort(model.body("beer").inertia), rel=2e-3)
     sheet = 2 * math.pi * METAL.radius * 0.27
     wall = sheet * METAL.length
     end = sheet * METAL.radius / 2
     across = wall * (METAL.radius**2 / 2 + METAL.length**2 / 12) + 2 * end * (METAL.radius**2 + METAL.length**2) / 4
-    assert free.transverse_inertia(METAL) == pytest.approx(across, rel=1e-12)
-    assert free.transverse_inertia(Can.hoop()) == pytest.approx(Can.hoop().inertia / 2 + 0.05 * 0.12**2 / 12, rel=1e-12)
+    assert free_numbers.transverse_inertia(METAL) == pytest.approx(across, rel=1e-12)
+    of_the_hoop = Can.hoop().inertia / 2 + 0.05 * 0.12**2 / 12
+    assert free_numbers.transverse_inertia(Can.hoop()) == pytest.approx(of_the_hoop, rel=1e-12)
 
 
 def test_the_sensors_tell_the_slosh() -> None:
@@ -170,5 +171,5 @@ def test_the_rows_find_a_wrong_model(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(type(can), "total_moments", lambda self: moments - [0, moments[1], 0])
     assert measured.reaction_errors(other) != pytest.approx(measured.left_out(other), rel=0.1)
     monkeypatch.undo()
-    monkeypatch.setattr(free, "BREAKING", 0.0)
+    monkeypatch.setattr(free_numbers, "BREAKING", 0.0)
     assert measured.thrown(measured.water(3), 5e-3, count=40) > 0

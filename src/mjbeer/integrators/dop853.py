@@ -25,7 +25,7 @@ from mjbeer.integrators.dynamics import (
     write,
     write_derivative,
 )
-from mjbeer.model.mujoco_library import LARGEST, quiet
+from mjbeer.model.mujoco_library import MAX_STATE, quiet
 
 # SciPy has these numbers too, but to import scipy.integrate takes longer than all other imports together.
 _TABLEAU = np.loadtxt(pathlib.Path(__file__).with_suffix(".txt"))
@@ -301,7 +301,7 @@ def _is_finite(state):
     """Return whether no component of a state is larger than MuJoCo allows."""
     finite = True
     for i in range(state.size):
-        finite = finite and abs(state[i]) < LARGEST
+        finite = finite and abs(state[i]) < MAX_STATE
     return finite
 
 

@@ -9,7 +9,7 @@ from mujoco.rollout import rollout
 
 from mjbeer.exceptions import DivergenceError
 from mjbeer.integrators import Observer
-from mjbeer.model.mujoco_library import LARGEST, quiet
+from mjbeer.model.mujoco_library import MAX_STATE, quiet
 
 _BLOCK = 4096
 """Steps between two returns to Python, where a run can be interrupted: their states fit into a processor's cache."""
@@ -87,9 +87,9 @@ class MuJoCoSteps:
         data = self._data
         causes = [mujoco.mju_warningText(kind, 0) for kind in np.flatnonzero(data.warning.number)]
         largest = max(np.abs(states).max(), np.abs(data.qacc).max())
-        if not causes and largest < LARGEST:  # false for NaN, too
+        if not causes and largest < MAX_STATE:  # false for NaN, too
             return
-        finite = (np.abs(states) < LARGEST).all(axis=1)
+        finite = (np.abs(states) < MAX_STATE).all(axis=1)
         steps = len(states) if finite.all() else int(finite.argmin())
         cause = "; ".join(causes) or "its state is no longer finite"
         time = (done + steps) * self._step

@@ -7,7 +7,7 @@ import numpy as np
 
 from mjbeer.exceptions import ToleranceError
 from mjbeer.model.joints import angle_sums, state_sizes
-from mjbeer.model.mujoco_library import LARGEST
+from mjbeer.model.mujoco_library import MAX_STATE
 from mjbeer.model.setting import MJBEER_INTEGRATORS, Setting
 from mjbeer.simulation.methods import finer_dop853, finer_gauss_jackson, fixed_method, suits_gauss_jackson
 from mjbeer.simulation.recorder import Recorder
@@ -109,7 +109,7 @@ def _refuse_stiff(scene: Scene, duration: float, tolerance: float) -> None:
     if not scene.damping_law:
         return
     # The weight of can and load, pulling at the rim, drives them apart at most at this rate.
-    slip = min(scene.damping_law.rate_at(scene.mass * scene.gravity * scene.can.radius), LARGEST)
+    slip = min(scene.damping_law.rate_at(scene.mass * scene.gravity * scene.can.radius), MAX_STATE)
     rate = float(relaxation_rate(scene, math.pi, slip))  # where J_f/J is largest
     if rate * duration > _STABLE * EVALUATIONS:
         raise not_reached(

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 import mujoco
 import numpy as np
 
-from mjbeer.model.build import compiled_model, write_numbers
 from mjbeer.model.check import check_run, is_edited
-from mjbeer.model.compiled_numbers import compiled_views
+from mjbeer.model.compiled import compiled_model, parameter_views, write_numbers
 from mjbeer.model.joints import initial_state
 from mjbeer.model.model_numbers import ModelNumbers, Structure
 from mjbeer.theory.equations import Coordinates
@@ -29,7 +28,7 @@ class SteppedModel:
     def __init__(self, numbers: ModelNumbers) -> None:
         self.model = compiled_model(numbers)
         self.data = mujoco.MjData(self.model)
-        self._views = compiled_views(self.model, numbers.parameters)
+        self._views = parameter_views(self.model, numbers.parameters)
         self._written: ModelNumbers | None = None
         self._edited = is_edited(numbers)
         self.write(numbers)

@@ -57,7 +57,7 @@ from mjbeer.integrators.gauss_jackson.weights import (
     row_of,
     weighted,
 )
-from mjbeer.model.mujoco_library import LARGEST, quiet
+from mjbeer.model.mujoco_library import MAX_STATE, quiet
 
 BLOCK = 1024
 """Steps between two returns to Python, so that a long run can be interrupted."""
@@ -195,7 +195,7 @@ def _advance(dynamics, sundman, timestep, history, totals, coefficients, samples
             evaluations += 1
         curve = StepCurve(coefficients, totals.first_sum[0], totals.second_sum[0], timestep, back + 1)
         after = end_node(sundman, curve, history.phi_second, end)
-        if not abs(after.phi) < LARGEST:  # it may also be NaN
+        if not abs(after.phi) < MAX_STATE:  # it may also be NaN
             status = NOT_FINITE
             break
         if not timestep * abs(after.rate) < LARGEST_TURN:

@@ -10,7 +10,7 @@ from scipy.interpolate import CubicHermiteSpline
 
 from mjbeer.model.attach import attach
 from mjbeer.model.build import build
-from mjbeer.model.free import transverse_inertia
+from mjbeer.model.free_numbers import transverse_inertia
 from mjbeer.model.mujoco_library import quiet
 from mjbeer.model.setting import MujocoIntegrator
 from mjbeer.paper.checks import Check
