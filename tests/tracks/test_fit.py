@@ -18,6 +18,7 @@ from mjbeer.exceptions import MjbeerError, ParameterError
 from mjbeer.studies.validation import track_checks
 from mjbeer.tracks.track_model import with_parameters
 from mjbeer.tracks.unknowns import FITTABLE
+from tests.tracks.filmed import PLACE, RELEASED, filmed
 
 pytestmark = pytest.mark.slow
 METAL = Can.sheet_metal()
@@ -25,28 +26,6 @@ WATER = liquid("water", math.radians(2), can=METAL)
 OIL = liquid("olive oil", math.radians(2), can=METAL)
 ICE = frozen(math.radians(5), can=METAL)
 KNOWN = {"fill": (0.5, 0.005)}
-# When a can of `filmed` is let go [s], and where [m].
-RELEASED = 17.4
-PLACE = 0.1
-
-
-def filmed(
-    scene: Scene,
-    phi0: float | None = None,
-    noise: float = 1e-3,
-    seed: int = 0,
-    seconds: float = 3.0,
-) -> Track:
-    """The track of a can by exact theory, from 17 s on, with a gap; with a level surface."""
-    start = -scene.incline if phi0 is None else phi0
-    time = np.arange(round(60 * seconds)) / 60
-    since = time - (RELEASED - 17)
-    rolls = since > 0
-    distance = np.zeros(len(time))
-    distance[rolls] = exact(scene, since[rolls], start).distance
-    kept = (time < 1.5) | (time > 1.7)
-    errors = noise * np.random.default_rng(seed).standard_normal(kept.sum())
-    return Track(17 + time[kept], PLACE + distance[kept] + errors)
 
 
 def steeper(scene: Scene) -> Scene:

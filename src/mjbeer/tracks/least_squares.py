@@ -146,7 +146,7 @@ def _minimize(
         converged=found.status > 0,
         weights=weights,
         next_weights=next_weights,
-        cost=_cost(next_weights, found.fun[model.data.size :]),
+        cost=cost(next_weights, found.fun[model.data.size :]),
     )
 
 
@@ -175,7 +175,7 @@ def _suitable_weights(model: TrackModel, values: dict[str, float], unknowns: int
     return Weights(noise[:, np.newaxis], kept)
 
 
-def _cost(weights: Weights, of_measured: np.ndarray) -> float:
+def cost(weights: Weights, of_measured: np.ndarray) -> float:
     """Return minus twice the logarithm of the likelihood of a track with suitable weights."""
     points = weights.kept.shape[1]
     of_track = 2 * points * math.fsum(np.log(weights.noise[:, 0]))
