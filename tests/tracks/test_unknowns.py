@@ -9,7 +9,7 @@ from mjbeer.tracks.unknowns import (
     Measurement,
     distance_from_guess,
     make_unknowns,
-    number_of_motion,
+    motion_slice,
     to_values,
     to_variables,
 )
@@ -53,7 +53,7 @@ def test_a_guess_is_the_middle_and_a_measured_value_is_a_guess() -> None:
 def test_the_motion_comes_first() -> None:
     unknowns = make_unknowns({"released", "phi0", "bend", "damping"}, TRACK, LIQUID, {})
     names = [unknown.name for unknown in unknowns]
-    assert names[: number_of_motion(unknowns)] == ["damping", "phi0"]
+    assert names[motion_slice(unknowns)] == ["damping", "phi0"]
 
 
 @pytest.mark.parametrize("name", ["incline", "fill", "damping"])

@@ -7,7 +7,7 @@ import numpy as np
 from scipy import fft, stats
 
 from mjbeer.tracks.least_squares import Minimum
-from mjbeer.tracks.unknowns import Unknown, number_of_motion, to_values
+from mjbeer.tracks.unknowns import Unknown, motion_slice, to_values
 
 _BY_CHANCE = 1e-3
 """How often a right model may be doubted, as its residuals are smooth by chance."""
@@ -91,7 +91,7 @@ def _other_motions(
     minimum: Minimum, alike: Sequence[Minimum], unknowns: Sequence[Unknown]
 ) -> Iterator[str]:
     """Name motions as near to the track that are not within the errors of this one."""
-    of_motion = slice(number_of_motion(unknowns))
+    of_motion = motion_slice(unknowns)
     deviations = minimum.uncertainty().deviations
     for other in alike:
         errors_off = np.abs(other.variables - minimum.variables) / deviations

@@ -32,7 +32,10 @@ def first_guesses(model: TrackModel, unknowns: Sequence[Unknown]) -> list[FirstG
     Then comes the best of each fill and damping, then the rest, each sorted by misfit. Motions near
     the fill of the fastest swing may lie in two valleys with no ridge that the grid could show.
     """
-    axes = _grid(model, unknowns)
+    axes = {}
+    for unknown in unknowns:
+        tried = _tried_values(unknown, model, unknowns)
+        axes[unknown.name] = sorted(set(tried))
     guesses = []
     for point in itertools.product(*axes.values()):
         values = dict(zip(axes, point, strict=True))
@@ -44,7 +47,7 @@ def first_guesses(model: TrackModel, unknowns: Sequence[Unknown]) -> list[FirstG
     lowest_nearby = ndimage.minimum_filter(grid, size=3, mode="nearest")
     is_lowest = (grid == lowest_nearby).ravel()
 
-    by_misfit = [index for index in np.argsort(misfits, kind="stable") if misfits[index] < math.inf]
+    by_misfit = np.argsort(misfits, kind="stable")[: np.isfinite(misfits).sum()].tolist()
     valleys = [index for index in by_misfit if is_lowest[index]]
     best_of_kind: dict[tuple[float | None, float | None], int] = {}
     for index in by_misfit:
@@ -106,29 +109,25 @@ def _stretches(distances: np.ndarray, along: np.ndarray) -> np.ndarray:
     return np.clip(centred @ along / squares, *_STRETCHES)
 
 
-def _grid(model: TrackModel, unknowns: Sequence[Unknown]) -> dict[str, list[float]]:
-    """Return the values of each unknown that are tried, increasing; what was measured has one.
+def _tried_values(unknown: Unknown, model: TrackModel, unknowns: Sequence[Unknown]) -> list[float]:
+    """Return the values of one of the unknowns on the grid; what was measured has one.
 
     Incline, damping and the release of a late track look alike, and so do two fills of ice.
     """
-    names = {unknown.name for unknown in unknowns}
-    axes = {}
-    for unknown in unknowns:
-        guess = unknown.guess
-        tried = [guess]
-        if unknown.measured is not None:
-            pass
-        elif unknown.name == "incline" and not unknown.log:  # in phase with the track's swings
-            factors = (0.8, 1.0) if "phi0" in names else (0.7, 0.85, 1.0, 1.2, 1.5)
-            tried = [factor * guess for factor in factors]
-        elif unknown.name == "fill":
-            tried.extend(_tried_fills(model.scene, model.duration / model.swing_time))
-        elif unknown.name == "damping":
-            tried.extend([0.55, 0.75, 1.3, 1.8])
-        elif unknown.name == "phi0":
-            tried.extend(np.linspace(-3, 3, 7).tolist())
-        axes[unknown.name] = sorted(set(tried))
-    return axes
+    guess = unknown.guess
+    if unknown.measured is not None:
+        return [guess]
+    if unknown.name == "incline" and not unknown.log:  # swings are to be in phase with the track's
+        phi0_is_sought = any(other.name == "phi0" for other in unknowns)
+        factors = (0.8, 1.0) if phi0_is_sought else (0.7, 0.85, 1.0, 1.2, 1.5)
+        return [factor * guess for factor in factors]
+    if unknown.name == "fill":
+        return [guess, *_tried_fills(model.scene, model.duration / model.swing_time)]
+    if unknown.name == "damping":
+        return [guess, 0.55, 0.75, 1.3, 1.8]
+    if unknown.name == "phi0":
+        return [guess, *np.linspace(-3, 3, 7).tolist()]
+    return [guess]
 
 
 def _tried_fills(scene: Scene, swings: float) -> list[float]:

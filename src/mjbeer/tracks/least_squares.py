@@ -10,7 +10,7 @@ from scipy import optimize
 
 from mjbeer.tracks.first_guess import FirstGuess, guess_nearby
 from mjbeer.tracks.track_model import TrackModel
-from mjbeer.tracks.unknowns import Unknown, number_of_motion, to_values, to_variables
+from mjbeer.tracks.unknowns import Unknown, motion_slice, to_values, to_variables
 
 _FAR = 6.0
 """Standard deviations of noise from which on a point is left out."""
@@ -77,7 +77,8 @@ class Minimum:
     def uncertainty(self) -> Uncertainty:
         """Return how far the variables may be off."""
         _, sizes, directions = np.linalg.svd(self.jacobian, full_matrices=False)
-        return Uncertainty(directions, 1 / np.maximum(sizes, 1e-6))
+        widths = 1 / np.maximum(sizes, 1e-6)  # finite where a direction changes nothing
+        return Uncertainty(directions, widths)
 
 
 def first_round(model: TrackModel, unknowns: Sequence[Unknown], guess: FirstGuess) -> Minimum:
@@ -86,11 +87,9 @@ def first_round(model: TrackModel, unknowns: Sequence[Unknown], guess: FirstGues
     Raises:
       ValueError: if there is no such motion.
     """
-    radius = model.scene.can.radius
-    noise = [
-        [guess.misfit if name == "along" else guess.misfit / radius] for name in model.channels
-    ]
-    weights = Weights(np.array(noise), np.ones(model.data.shape, bool))
+    noise = np.full((len(model.channels), 1), guess.misfit / model.scene.can.radius)  # [rad]
+    noise[model.channels.index("along")] = guess.misfit
+    weights = Weights(noise, np.ones(model.data.shape, bool))
     return _minimize(model, unknowns, guess.values, weights, "2-point")
 
 
@@ -107,7 +106,7 @@ def next_round(model: TrackModel, unknowns: Sequence[Unknown], minimum: Minimum)
 
 def distinct(unknowns: Sequence[Unknown], minima: Sequence[Minimum]) -> list[Minimum]:
     """Return the minima whose motions differ, those with the least cost first."""
-    of_motion = slice(number_of_motion(unknowns))
+    of_motion = motion_slice(unknowns)
     chosen: list[Minimum] = []
     for minimum in sorted(minima, key=lambda minimum: minimum.cost):
         distances = [np.abs(minimum.variables - other.variables)[of_motion] for other in chosen]

@@ -1,11 +1,12 @@
 """The track of a filmed can, and the tables of Tracker, Logger Pro, Capstone and phyphox."""
 
 import csv
+import itertools
 import math
 import os
 import pathlib
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -63,17 +64,17 @@ class Track:
 
 
 class _Column(NamedTuple):
-    """What a column may be: units with their sizes in SI units, and a pattern of usual headings."""
+    """What a column may be: its units, as parts of SI's, and a pattern of its usual headings."""
 
     units: dict[str, float]
     usual: str
 
 
 class _Used(NamedTuple):
-    """The index of a column that is read, and its unit in SI units."""
+    """The index of a column that is read, and how much of SI's unit its own unit is."""
 
     index: int
-    unit: float
+    in_si: float
 
 
 class _Cell(NamedTuple):
@@ -130,20 +131,19 @@ def read_track(
     source = require.path(path)
     columns = require.instance("columns", {} if columns is None else columns, dict)
     rows = _rows(source)
-    heading, first = _heading(source, rows)
+    heading = _heading_line(source, rows)
     titles = rows[heading]
+    data = {line: row for line, row in rows.items() if line > heading}
     used = _used_columns(f"{source}, line {heading}", titles, columns)
     if "frame" in used:
         interval = 1 / require.positive("rate of the frames", rate, "1/s")
         used["time"] = _Used(used.pop("frame").index, interval)
-    data = {line: row for line, row in rows.items() if line >= first}
     cells = _cells(source, data, used, len(titles))
-    texts = [cell.text for column in cells.values() for cell in column]
-    comma = _meaning_of_commas(texts)
+    comma = _meaning_of_commas(itertools.chain(*cells.values()))
     arrays = {}
     for name, column in cells.items():
         numbers = [_number(cell, comma) for cell in column]
-        arrays[name] = used[name].unit * np.array(numbers)
+        arrays[name] = used[name].in_si * np.array(numbers)
     for cell, interval in zip(cells["time"][1:], np.diff(arrays["time"]), strict=True):
         if interval <= 0:
             raise ParameterError(f"{cell.place}: this time is not later than the one before")
@@ -184,16 +184,13 @@ def _text(source: pathlib.Path) -> str:
     return raw.decode("utf-16" if marked else "utf-8-sig", errors="replace")
 
 
-def _heading(source: pathlib.Path, rows: dict[int, list[str]]) -> tuple[int, int]:
-    """Return the numbers of the lines of the heading and of the first row with two numbers."""
-    heading = 0
-    for line, row in rows.items():
-        if sum(_is_number(cell) for cell in row) < 2:
-            heading = line
-        elif heading:
-            return heading, line
-        else:
+def _heading_line(source: pathlib.Path, rows: dict[int, list[str]]) -> int:
+    """Return the number of the line above the first row with two numbers."""
+    for above, line in itertools.pairwise(rows):
+        if sum(_is_number(cell) for cell in rows[above]) > 1:
             break
+        if sum(_is_number(cell) for cell in rows[line]) > 1:
+            return above
     needed = "there must be a heading above two columns of numbers or more"
     raise ParameterError(f"{source} is no table: {needed}")
 
@@ -210,7 +207,7 @@ def _used_columns(
         index = _column_index(place, titles, name, str(columns.get(name, "")))
         if index is None or (name == "frame" and "time" in used):
             continue
-        used[name] = _Used(index, _unit(place, titles, name, index))
+        used[name] = _Used(index, _unit_in_si(place, titles, name, index))
     if "x" not in used or not used.keys() & {"time", "frame"}:
         needed = f"time and x are needed; say which columns they are, of {titles}"
         raise ParameterError(f"{place}: {needed}")
@@ -219,20 +216,26 @@ def _used_columns(
 
 def _column_index(place: str, titles: list[str], name: str, asked: str) -> int | None:
     """Return the column that was asked for, or else that with a usual heading; None without one."""
-    if asked:
-        meant = [index for index, title in enumerate(titles) if asked in (title, str(index + 1))]
-    else:
-        headings = [_name_and_unit(title)[0] for title in titles]
-        usual = re.compile(_COLUMNS[name].usual)
-        meant = [index for index, heading in enumerate(headings) if usual.fullmatch(heading)]
+    usual = _COLUMNS[name].usual
+    meant = [
+        index for index, title in enumerate(titles) if _is_meant(title, index + 1, asked, usual)
+    ]
     if len(meant) > 1 or (asked and not meant):
         found = f"{len(meant) or 'no'} columns may be {name}"
         raise ParameterError(f"{place}: {found}; say which by its number from 1, of {titles}")
     return meant[0] if meant else None
 
 
-def _unit(place: str, titles: list[str], name: str, index: int) -> float:
-    """Return the unit of a column in SI units, 1 if its heading has none."""
+def _is_meant(title: str, number: int, asked: str, usual: str) -> bool:
+    """Return whether a column is asked for by its heading or number, or else has a usual heading."""
+    if asked:
+        return asked in (title, str(number))
+    heading, _ = _name_and_unit(title)
+    return re.fullmatch(usual, heading) is not None
+
+
+def _unit_in_si(place: str, titles: list[str], name: str, index: int) -> float:
+    """Return how much of SI's unit the unit of a column is, 1 if its heading has none."""
     title = titles[index]
     units = _COLUMNS[name].units
     _, unit = _name_and_unit(title)
@@ -272,8 +275,9 @@ def _is_number(text: str) -> bool:
     return any(form.fullmatch(text) for form in (_POINT, _COMMA, _GROUPED))
 
 
-def _meaning_of_commas(texts: list[str]) -> str | None:
+def _meaning_of_commas(cells: Iterable[_Cell]) -> str | None:
     """Return what a comma is in these numbers: "decimal" or "thousands"; None if none tells."""
+    texts = [cell.text for cell in cells]
     if any(_COMMA.fullmatch(text) and not _GROUPED.fullmatch(text) for text in texts):
         return "decimal"
     if any("." in text or text.count(",") > 1 for text in texts):

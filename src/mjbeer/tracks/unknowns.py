@@ -107,30 +107,44 @@ def make_unknowns(
         "scale": 1.0,
         "turned": 0.0 if track.roll is None else float(track.roll[0]),
     }
-    guesses.update({name: measurement.value for name, measurement in measured.items()})
+    for name, measurement in measured.items():
+        guesses[name] = measurement.value
+    if "damping" in names:
+        require.positive("known damping", guesses["damping"])
     unknowns = []
-    for name in NAMES:
+    for name, kind in _KINDS.items():
         if name not in names:
             continue
         guess = guesses.get(name, 0.0)
-        scale, low, high = _KINDS[name]
-        # An even motion stays one of the same kind when these are multiplied by a factor.
+        low = kind.low
+        high = kind.high
+        # The terminal speed is a ratio of powers of these two.
         log = name == "damping" or (name == "incline" and scene.attachment == "sliding")
-        if name == "damping":
-            require.positive("known damping", guess)
         if log:
             low = guess / _LOG_RANGE
             high = guess * _LOG_RANGE
-        if name == "incline" and log and guess * (track.along[-1] - track.along[0]) <= 0:
-            raise ParameterError(
-                "the can of this track does not roll down the scene's incline: turn the sign of one"
-            )
-        if name == "released":  # a tenth of the track or more is motion
-            duration = float(np.ptp(track.time))
-            low = float(track.time[-1]) - 4 * duration
-            high = float(track.time[-1]) - 0.1 * duration
-        unknowns.append(Unknown(name, guess, scale, low, high, log, measured.get(name)))
+        if log and name == "incline":
+            _require_downhill(track, guess)
+        if name == "released":
+            low, high = _releases(track)
+        unknown = Unknown(name, guess, kind.scale, low, high, log, measured.get(name))
+        unknowns.append(unknown)
     return tuple(unknowns)
+
+
+def _require_downhill(track: Track, incline: float) -> None:
+    """Raise an error if a can rolled up this incline."""
+    distance = track.along[-1] - track.along[0]
+    if incline * distance <= 0:
+        uphill = "the can of this track does not roll down the scene's incline"
+        raise ParameterError(f"{uphill}: turn the sign of one")
+
+
+def _releases(track: Track) -> tuple[float, float]:
+    """Return the earliest and the latest time of release [s]: the can moves in a tenth or more."""
+    end = float(track.time[-1])
+    duration = float(np.ptp(track.time))
+    return end - 4 * duration, end - 0.1 * duration
 
 
 def to_variables(unknowns: Sequence[Unknown], values: Mapping[str, float]) -> np.ndarray:
@@ -144,12 +158,12 @@ def to_values(unknowns: Sequence[Unknown], variables: np.ndarray) -> dict[str, f
     return {unknown.name: unknown.to_value(variable) for unknown, variable in pairs}
 
 
+def motion_slice(unknowns: Sequence[Unknown]) -> slice:
+    """Return which of the unknowns change the motion: the first ones."""
+    return slice(sum(unknown.name in OF_MOTION for unknown in unknowns))
+
+
 def distance_from_guess(unknowns: Sequence[Unknown], variables: np.ndarray) -> float:
-    """Return by how many large changes all that changes the motion is off its guess, summed up."""
-    count = number_of_motion(unknowns)
-    return float(np.abs(variables - _MIDDLE)[:count].sum())
-
-
-def number_of_motion(unknowns: Sequence[Unknown]) -> int:
-    """Return how many unknowns change the motion; they are the first ones."""
-    return sum(unknown.name in OF_MOTION for unknown in unknowns)
+    """Return the sum of the large changes by which the motion is off its guess."""
+    changes = np.abs(variables - _MIDDLE)
+    return float(changes[motion_slice(unknowns)].sum())
