@@ -43,32 +43,37 @@ _FIRST_ROUNDS = 16
 _SEARCHES = 6
 """Those of them that are followed to the end."""
 _ALIKE = 9.0
-"""Minima are told apart by three standard errors: by this difference of their costs."""
+"""The difference of costs from which on the track tells minima apart: three standard errors."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Fit:
     """A scene whose motion is that of a track: what follows from it, how well, and what does not.
 
-    The `scene` is as fitted, its incline less by the rolling resistance. `values` are those of the
-    scene, "damping" as a factor on its own law; "place" and "released", where the can was [m] and
-    when it was let go [s], as the track counts; "bend" of its middle [m]; with a tracked roll
-    "scale", by which the track is too long, and "turned", the roll at first [rad]. `errors` are
-    their standard errors, if the model is right, `correlation` is that of the errors, and `noise`
-    the standard deviation from the `model`, the track without noise: "along" [m], "roll" and "phi"
-    [rad]. `warnings` say what speaks against the model and what the track cannot tell; `run` is the
-    motion from release on.
+    Dictionaries are by name: of the unknowns, or of what was tracked, "along" [m], and perhaps
+    "roll" and "phi" [rad].
     """
 
     track: Track
     scene: Scene
+    """The scene as fitted: its incline is the true one less the rolling resistance."""
     values: dict[str, float]
+    """What was found of the scene, "damping" as a factor on its own law; "place" [m] and "released"
+    [s], where and when the can was let go, as the track counts; "bend", how far the middle of the
+    track is bent [m]; with a tracked roll "scale", by which the track is too long, and "turned",
+    the roll at first [rad]."""
     errors: dict[str, float]
+    """The standard errors of the values, if the model is right."""
     correlation: np.ndarray
+    """The correlation of these errors, shape (values, values)."""
     noise: dict[str, float]
+    """The standard deviation of what was tracked from the model."""
     warnings: tuple[str, ...]
+    """What speaks against the model, and what the track cannot tell."""
     run: Run
+    """The motion from the release on."""
     model: dict[str, np.ndarray]
+    """The track without noise, shape (points,) each."""
 
     def lines(self) -> list[str]:
         """Return each value of the scene with its error in words, angles in degrees."""
@@ -254,7 +259,7 @@ def _search(model: TrackModel, unknowns: tuple[Unknown, ...], progress: bool) ->
         step("looking for starts")
         begun = []
         for guess in first_guesses(model, unknowns)[:_FIRST_ROUNDS]:
-            with contextlib.suppress(ValueError):  # there is no such motion
+            with contextlib.suppress(ValueError):  # SciPy's, where there is no such motion
                 begun.append(first_round(model, unknowns, guess))
         minima = []
         for minimum in distinct(unknowns, begun)[:_SEARCHES]:

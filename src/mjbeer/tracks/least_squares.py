@@ -59,20 +59,23 @@ class Uncertainty(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Minimum:
-    """What a round of least squares found.
-
-    `residuals` are those of the track's points, channel by channel, then those of the measured
-    values, all divided by their errors. `weights` are those of this round, `next_weights` those
-    that suit its residuals. `cost` is minus twice the logarithm of the likelihood, but a constant.
-    """
+    """What a round of least squares found."""
 
     variables: np.ndarray
+    """The solver's variables of the unknowns."""
     residuals: np.ndarray
+    """What is left of the track's points, channel by channel, then of the measured values, all
+    divided by their errors."""
     jacobian: np.ndarray
+    """The derivatives of the residuals, shape (residuals, unknowns)."""
     converged: bool
+    """Whether the solver was not stopped by its largest number of steps."""
     weights: Weights
+    """The weights of this round."""
     next_weights: Weights
+    """The weights that suit what is left."""
     cost: float
+    """Minus twice the logarithm of the likelihood with the next weights, up to a constant."""
 
     def uncertainty(self) -> Uncertainty:
         """Return how far the variables may be off."""

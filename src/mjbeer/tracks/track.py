@@ -32,8 +32,7 @@ class Track:
 
     Raises:
       ParameterError: if an array is not finite, they differ in length, the times do not increase,
-        there are fewer than 12 points, which is twice the usual number of unknowns, or all are in
-        one place.
+        there are fewer than 12 points, or all are in one place.
     """
 
     time: np.ndarray
@@ -227,7 +226,7 @@ def _column_index(place: str, titles: list[str], name: str, asked: str) -> int |
 
 
 def _is_meant(title: str, number: int, asked: str, usual: str) -> bool:
-    """Return whether a column is asked for by its heading or number, or else has a usual heading."""
+    """Return whether a column has the heading or number asked for, or else a usual heading."""
     if asked:
         return asked in (title, str(number))
     heading, _ = _name_and_unit(title)
@@ -304,7 +303,7 @@ def _number(cell: _Cell, comma: str | None) -> float:
 def _along_line(source: pathlib.Path, x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Return the places along the line through points [m], from its middle, counted as they went.
 
-    The line is that of least squares, across it.
+    It is the line with the least squares of distances from it.
     """
     points = np.stack([x - x.mean(), y - y.mean()], axis=1)
     _, sizes, directions = np.linalg.svd(points, full_matrices=False)
