@@ -2,6 +2,7 @@
 
 import pathlib
 import re
+from typing import Any
 
 import numpy as np
 import pytest
@@ -105,10 +106,11 @@ def test_a_file_that_is_not_there_is_refused(tmp_path: pathlib.Path) -> None:
     [
         ({"time": TIME[::-1]}, "a track has 12 points or more, ever later"),
         ({"along": 0 * PLACE}, "not all in one place"),
+        ({"along": None}, "along must be a list or a one-dimensional array"),
         ({"roll": PLACE[1:]}, "roll must have as many entries as time, 20, got 19"),
         ({"phi": np.full(20, np.nan)}, r"phi\[0\] must be a finite number"),
     ],
 )
-def test_what_is_no_track_is_refused(changes: dict[str, np.ndarray], message: str) -> None:
+def test_what_is_no_track_is_refused(changes: dict[str, Any], message: str) -> None:
     with pytest.raises(ParameterError, match=message):
         Track(**{"time": TIME, "along": PLACE, **changes})

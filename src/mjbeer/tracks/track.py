@@ -58,8 +58,8 @@ class Track:
     @property
     def channels(self) -> tuple[str, ...]:
         """Return the names of what was tracked: "along", and perhaps "roll" and "phi"."""
-        names = ("along", "roll", "phi")
-        return tuple(name for name in names if getattr(self, name) is not None)
+        angles = [name for name in ("roll", "phi") if getattr(self, name) is not None]
+        return ("along", *angles)
 
 
 class _Column(NamedTuple):
