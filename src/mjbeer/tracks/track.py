@@ -51,9 +51,9 @@ class Track:
         later = bool((np.diff(self.time) > 0).all())
         moved = bool(np.ptp(self.along) > 0)
         if not (enough and later and moved):
-            allowed = "a track has 12 points or more, ever later and not all in one place"
+            allowed = f"{_FEWEST_POINTS} points or more, ever later and not all in one place"
             got = f"{len(self.time)} from {self.time[0]:g} s to {self.time[-1]:g} s"
-            raise ParameterError(f"{allowed}, got {got}")
+            raise ParameterError(f"a track has {allowed}, got {got}")
 
     @property
     def channels(self) -> tuple[str, ...]:
