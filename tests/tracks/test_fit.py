@@ -145,6 +145,7 @@ def test_damping_and_drag_look_alike() -> None:
     assert warned(result, "this track does not tell damping from drag"), result
 
 
+@pytest.mark.costly
 def test_of_two_motions_alike_the_one_near_the_guess_is_taken() -> None:
     """Cans with a little and with much ice rock alike on other inclines."""
     scene = frozen(math.radians(3), 0.6, METAL)

@@ -12,9 +12,11 @@ from mjbeer.tracks.first_guess import FirstGuess, first_guesses, guess_anywhere,
 from mjbeer.tracks.least_squares import (
     Minimum,
     Weights,
+    as_good_as_best,
     cost,
     distinct,
     first_round,
+    nearest_to_guess,
     next_round,
 )
 from mjbeer.tracks.track_model import TrackModel
@@ -116,3 +118,13 @@ def test_minima_of_one_motion_are_one_and_the_best_comes_first() -> None:
     elsewhere = minimum(cost=4.0, place=0.3)
     other = minimum(cost=1.0, incline=0.06)
     assert distinct(UNKNOWNS, [same, good, elsewhere, other]) == [other, good]
+
+
+def test_of_minima_alike_the_one_near_the_guess_is_taken() -> None:
+    """Costs that differ by 9 are three standard errors apart."""
+    best = minimum(cost=1.0, incline=0.07)
+    near = minimum(cost=9.9, incline=ROCKING.incline)
+    worse = minimum(cost=10.1, incline=ROCKING.incline)
+    alike = as_good_as_best([best, near, worse])
+    assert alike == [best, near]
+    assert nearest_to_guess(UNKNOWNS, alike) == near

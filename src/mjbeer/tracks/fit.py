@@ -13,7 +13,14 @@ from mjbeer.output import terminal
 from mjbeer.theory.scene import Scene
 from mjbeer.tracks.doubts import doubts
 from mjbeer.tracks.first_guess import first_guesses
-from mjbeer.tracks.least_squares import Minimum, distinct, first_round, next_round
+from mjbeer.tracks.least_squares import (
+    Minimum,
+    as_good_as_best,
+    distinct,
+    first_round,
+    nearest_to_guess,
+    next_round,
+)
 from mjbeer.tracks.result import Fit
 from mjbeer.tracks.track import Track
 from mjbeer.tracks.track_model import TrackModel, with_parameters
@@ -22,7 +29,6 @@ from mjbeer.tracks.unknowns import (
     NAMES,
     Measurement,
     Unknown,
-    distance_from_guess,
     make_unknowns,
     to_values,
 )
@@ -35,8 +41,6 @@ _FIRST_ROUNDS = 16
 """First guesses from which least squares begin."""
 _SEARCHES = 6
 """Those of them that are followed to the end."""
-_ALIKE = 9.0
-"""The difference of costs from which on the track tells minima apart: three standard errors."""
 
 
 def fit(
@@ -141,8 +145,8 @@ def _search(model: TrackModel, unknowns: tuple[Unknown, ...], progress: bool) ->
 
 def _result(model: TrackModel, unknowns: tuple[Unknown, ...], minima: list[Minimum]) -> Fit:
     """Return the fit of the best minimum: of those as good, the one nearest to the guess."""
-    alike = [minimum for minimum in minima if minimum.cost < minima[0].cost + _ALIKE]
-    best = min(alike, key=lambda minimum: distance_from_guess(unknowns, minimum.variables))
+    alike = as_good_as_best(minima)
+    best = nearest_to_guess(unknowns, alike)
     values = to_values(unknowns, best.variables)
     uncertainty = best.uncertainty()
     errors = {}

@@ -10,7 +10,13 @@ from scipy import optimize
 
 from mjbeer.tracks.first_guess import FirstGuess, guess_nearby
 from mjbeer.tracks.track_model import TrackModel
-from mjbeer.tracks.unknowns import Unknown, motion_slice, to_values, to_variables
+from mjbeer.tracks.unknowns import (
+    Unknown,
+    distance_from_guess,
+    motion_slice,
+    to_values,
+    to_variables,
+)
 
 _FAR = 6.0
 """Standard deviations of noise from which on a point is left out."""
@@ -18,6 +24,8 @@ _LEAST_NOISE = 1e-6
 """The noise that a track has at least, [m] or [rad]: that of the simulated motions."""
 _SAME = 1e-2
 """How far variables of one and the same minimum may be apart; 1 is a large change."""
+_TOLD_APART = 9.0
+"""The difference of costs from which on a track tells minima apart: three standard errors."""
 
 
 class Weights(NamedTuple):
@@ -116,6 +124,17 @@ def distinct(unknowns: Sequence[Unknown], minima: Sequence[Minimum]) -> list[Min
         if all(distance.max(initial=0.0) >= _SAME for distance in distances):
             chosen.append(minimum)
     return chosen
+
+
+def as_good_as_best(minima: Sequence[Minimum]) -> list[Minimum]:
+    """Return the minima that the track does not tell from the best of them."""
+    least = min(minimum.cost for minimum in minima)
+    return [minimum for minimum in minima if minimum.cost < least + _TOLD_APART]
+
+
+def nearest_to_guess(unknowns: Sequence[Unknown], minima: Sequence[Minimum]) -> Minimum:
+    """Return the minimum whose motion is nearest to the guess."""
+    return min(minima, key=lambda minimum: distance_from_guess(unknowns, minimum.variables))
 
 
 def _minimize(
