@@ -20,7 +20,9 @@ DRIFTS = ("energy_change", "swing_drift", "axis_drift")
 
 
 @pytest.mark.parametrize("friction", [math.inf, 1e-3])
-@pytest.mark.parametrize("scene", [sliding(0.3, can=METAL), frozen(0.1), frozen(-0.3, can=METAL), pendulum()])
+@pytest.mark.parametrize(
+    "scene", [sliding(0.3, can=METAL), frozen(0.1), frozen(-0.3, can=METAL), pendulum()]
+)
 def test_the_compiled_record_is_the_same(scene: Scene, friction: float) -> None:
     """In pieces, to rounding. The other recorder looks for forces at more points in each step."""
     setting = Setting(integrator="GaussJackson", timestep=1e-3)
