@@ -60,9 +60,8 @@ def test_the_command_line_has_the_same_defaults() -> None:
     ours = simulate(sliding())
     theirs = trajectory_of(parse(["simulate", "sliding"]))
     assert (ours.time[-1], ours.phi0) == (2.0, math.radians(60))
-    assert theirs.phi == pytest.approx(
-        ours.phi, abs=1e-14
-    )  # degrees and back are a rounding of the start
+    # Degrees and back are a rounding of the start.
+    assert theirs.phi == pytest.approx(ours.phi, abs=1e-14)
 
 
 @pytest.mark.parametrize("integrator", ALL)

@@ -77,9 +77,8 @@ def test_each_thread_has_its_own() -> None:
 
 
 def test_a_run_that_failed_leaves_no_trace(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(
-        "mjbeer.simulation.solve.EVALUATIONS", 100_000
-    )  # soon, and not after millions
+    # It is given up soon, and not after millions.
+    monkeypatch.setattr("mjbeer.simulation.solve.EVALUATIONS", 100_000)
     coarse = Setting(integrator="Euler", timestep=1.0)
     failed = kept(SCENES[0], coarse)
     with pytest.raises(DivergenceError):
