@@ -51,15 +51,15 @@ def test_small_oscillations_match_equation_10() -> None:
         before = now
     # RK4 has a phase error of (omega h)^4/120, 3e-9, and a crossing one of omega^2 h^3/16, 2e-8 s
     # in 1.7 s.
-    assert math.pi * 20 / (crossings[-1] - crossings[0]) == pytest.approx(
-        frequency(ALPHA), rel=1e-7
-    )
+    measured = math.pi * 20 / (crossings[-1] - crossings[0])
+    assert measured == pytest.approx(frequency(ALPHA), rel=1e-7)
 
 
 @pytest.mark.parametrize("degrees", [1, 10, 30])
 def test_small_oscillations_match_equation_10_on_any_incline(degrees: float) -> None:
     run = simulate(sliding(math.radians(degrees)), 2.0, phi0=1e-4, tolerance=1e-12)
-    assert run.frequency() == pytest.approx(frequency(math.radians(degrees)), rel=1e-7)
+    # At 1e-4 rad it is lower by 2e-9 of itself.
+    assert run.frequency() == pytest.approx(frequency(math.radians(degrees)), rel=1e-8)
 
 
 @pytest.mark.parametrize(

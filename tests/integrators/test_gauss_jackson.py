@@ -218,7 +218,8 @@ def test_every_step_is_seen_once(end: float) -> None:
     # dt/ds is 1 at the start, and between 1/2 and 2 in this swing.
     assert np.diff(times[:-1]).min(initial=1e-3) > 0.5e-3
     assert np.diff(times).max(initial=0.0) < 2e-3
-    assert np.abs(states[:, 0] - exact(scene, times, 1.0).phi).max() < 1e-11
+    # Rounding of 3,000 steps. Measured: 7e-15.
+    assert np.abs(states[:, 0] - exact(scene, times, 1.0).phi).max() < 1e-13
     steps = len(times) - 1
     assert (len(pieces) > 1) == (steps > BLOCK)
     # Thirteen for each iteration of the first steps, which reach six steps after the start.

@@ -137,7 +137,7 @@ def test_damping_is_continuous_towards_level_ground() -> None:
         return float(np.abs(motion.phi - scene.terminal_tilt()).max())
 
     level = kept(0.0)
-    assert level == pytest.approx(0.603, abs=1e-3)
+    assert level == pytest.approx(0.603, abs=1e-3)  # three digits
     for incline, apart in ((1e-9, 1e-5), (1e-6, 1e-2), (1e-4, 0.1)):
         assert abs(kept(incline) / level - 1) < apart
 
