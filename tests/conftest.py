@@ -38,9 +38,8 @@ def pytest_configure(config: pytest.Config) -> None:
     is not there."""
     if not os.environ.get("MJBEER_EVERYTHING"):
         return
-    config.getini("filterwarnings").insert(
-        0, "error"
-    )  # below the others, of which the last that fits decides
+    # Below the others, of which the last that fits decides.
+    config.getini("filterwarnings").insert(0, "error")
     if not hasattr(config, "workerinput"):  # and not once more in each worker
         from mjbeer.studies.benchmark.other_tools import absent
 

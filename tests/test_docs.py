@@ -49,9 +49,8 @@ def test_python_runs_and_has_what_the_text_names(
     names: dict[str, object] = {}
     for path, block in BLOCKS:
         if block["language"] == "python":
-            lines = block.string.count(
-                "\n", 0, block.start("text")
-            )  # an error names its line in the document
+            # An error names its line in the document.
+            lines = block.string.count("\n", 0, block.start("text"))
             exec(compile("\n" * lines + block["text"], str(path), "exec"), names)
     spans = re.findall(r"`(\w+)\.(\w+)[^`]*`", README.read_text())
     named = [(owner, attribute) for owner, attribute in spans if owner in names]
@@ -96,7 +95,7 @@ def written() -> list[Any]:
     cases = []
     for path in documents.DOCUMENTS:
         if "<!-- made:" in path.read_text():
-            # Two seconds, and its numbers are those of MuJoCo's integrators alone.
+            # Two seconds. Its numbers change with MuJoCo, or where the study is made anew.
             marks = [pytest.mark.costly] if path.name == "stability.md" else []
             cases.append(pytest.param(path, id=path.name, marks=marks))
     return cases

@@ -47,9 +47,8 @@ def test_the_tutorial_runs_and_shows_plots_a_video_and_a_table(
     assert "this run is not to be relied on: " in text
     assert "the can slips by" in text
     assert "tolerance 1e-9 rad, error" in text
-    assert re.search(
-        r"0\.8[0-4]\d{6}", text
-    )  # of the runs can be relied on; a few are at the edge of it
+    # This share of the runs can be relied on; a few are at the edge of it.
+    assert re.search(r"0\.8[0-4]\d{6}", text)
 
 
 def test_the_tutorial_is_kept_with_its_output() -> None:

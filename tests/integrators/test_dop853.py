@@ -99,7 +99,8 @@ def test_what_is_left_out_of_an_evaluation_changes_no_bit(scene: Scene) -> None:
     evaluate(dynamics.kernel_view, start, derivative)
 
     data = mujoco.MjData(model)
-    data.qpos[:], data.qvel[:] = np.split(start, 2)
+    data.qpos[:] = start[: model.nq]
+    data.qvel[:] = start[model.nq :]
     mujoco.mj_forward(model, data)
     # The actuator's force is added to the others in another order: one rounding of their sum.
     exactly = model.nu == 0

@@ -76,9 +76,8 @@ class Volume:
         wall = across(np.ones(1))[:, 0]
         lower = along(-self.top)[:, 0]
         self.sideways = math.pi * np.kron(wall, along(z) @ self.wz)
-        tilted = (
-            math.pi * across(r) @ (ring * r)
-        )  # on the bottom the normal velocity is x, on a lid -x
+        # On the bottom the normal velocity is x, on a lid -x.
+        tilted = math.pi * across(r) @ (ring * r)
         self.tilting = math.pi * np.kron(wall, along(z) @ (self.wz * z)) + np.kron(tilted, lower)
         self.lid = -np.kron(tilted, upper)
         self.metacentre = math.pi / 4
