@@ -40,7 +40,7 @@ def test_a_curve_ends_where_it_reaches_rounding() -> None:
     axes = Figure().subplots()
     work_precision._draw(axes, found, work_precision._SMOOTH)
     (line,) = axes.lines
-    assert list(line.get_ydata()) == [1e-6, 1e-14]
+    assert list(line.get_ydata()) == [1e-6, 1e-13]
 
 
 def test_a_panel_has_few_curves() -> None:

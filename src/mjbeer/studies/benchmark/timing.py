@@ -2,6 +2,7 @@
 
 import gc
 import math
+import statistics
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -32,9 +33,11 @@ from mjbeer.theory.trajectory import Trajectory
 REPEATS = 5
 """Timed rounds. Each round times every setting once, so that a slow minute of the machine hits all
 settings alike."""
-_BRIEF = 0.05
-"""A run shorter than this [s] is timed twice and the first time dropped, so that caches and
-predictors are warm."""
+_WARM = 0.05
+"""A run shorter than this [s] is run once before, so that caches and predictors are warm."""
+_BRIEF = 0.01
+"""A run that is shorter than this [s] is repeated for so long, as one of a tenth of a millisecond is at
+the mercy of the system. Its time in a round is the median."""
 
 
 def conduct(names: Sequence[str], quick: bool, console: Console | None) -> Benchmark:
@@ -81,15 +84,20 @@ def _time_all(timed: Sequence[tuple[Point, Solver]]) -> None:
 
 
 def _seconds(run: Callable[[], Any]) -> float:
-    """Return the run time [s] with warm caches."""
-    duration = 0.0
-    for _ in range(2):
-        begin = time.perf_counter()
-        run()
-        duration = time.perf_counter() - begin
-        if duration > _BRIEF:
-            break
-    return duration
+    """Return the run time in a round [s]."""
+    duration = _seconds_once(run)
+    if duration > _WARM:
+        return duration
+    durations = []
+    while sum(durations) < _BRIEF:
+        durations.append(_seconds_once(run))
+    return statistics.median(durations)
+
+
+def _seconds_once(run: Callable[[], Any]) -> float:
+    begin = time.perf_counter()
+    run()
+    return time.perf_counter() - begin
 
 
 def measure(case: Case, point: Point, truth: Trajectory) -> Solver:

@@ -32,10 +32,10 @@ _SMOOTH = {
     Curve("reduced", "DOP853"): _Line("mjbeer's DOP853 on MuJoCo", COLOURS[0], "-o"),
     Curve("reduced", "GaussJackson"): _Line("mjbeer's Gauss-Jackson on MuJoCo", COLOURS[1], "-s"),
     Curve(COMPILED_ODEINT, "", TOLERANCE): _Line(
-        "SciPy's odeint (LSODA) on equations", COLOURS[4], "--v"
+        "SciPy's odeint (LSODA) on compiled equations", COLOURS[4], "--v"
     ),
-    Curve(COMPILED_DOP853, "", TOLERANCE): _Line("DOP853 on equations", COLOURS[2], "--D"),
-    Curve(HEYOKA, "", TOLERANCE): _Line("heyoka on equations", COLOURS[3], "--P"),
+    Curve(COMPILED_DOP853, "", TOLERANCE): _Line("DOP853 on compiled equations", COLOURS[2], "--D"),
+    Curve(HEYOKA, "", TOLERANCE): _Line("heyoka, compiled equations", COLOURS[3], "--P"),
 }
 """The curves of a scene whose can rolls without a constraint."""
 _CONTACT = {
@@ -48,8 +48,8 @@ _CONTACT = {
 }
 """The curves of a scene whose can rolls by friction."""
 _CONTACT_CASE = "frozen"
-_FLOOR = 1e-14
-"""Smaller errors [rad] are rounding, and are drawn at the floor."""
+_FLOOR = 1e-13
+"""Smaller errors [rad] are rounding: a curve ends with its first point here."""
 _CEILING = 3.0
 """Larger errors [rad] are no motion."""
 _SUBTITLE = (
@@ -94,7 +94,7 @@ def draw(study: Benchmark, path: pathlib.Path | Picture) -> None:
             axes.set_visible(False)
         _set_axes(panels[:count], shown)
         for axes in panels[count - 2 : count]:
-            axes.set_xlabel("run time of 2 s of motion [ms]")
+            axes.set_xlabel("run time of 2 s of motion [ms], without compiling")
         for axes in panels[0:count:2]:
             axes.set_ylabel("largest error of φ and u/a [rad]")
         name_below(panels[: len(cases)], 3)
