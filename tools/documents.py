@@ -91,9 +91,10 @@ def holds() -> str:
             ),
             (
                 "**run time**",
-                f"on the same reduced model MuJoCo's RK4 takes {ratio(RK4, 1e-3)} times as long as mjbeer's best setting "
-                f"for an error of 1e-3 rad, and {ratio(RK4, 1e-6)} times for 1e-6 rad; without MuJoCo, compiled equations "
-                f"that were derived by hand take {ratio(COMPILED_DOP853, 1e-6)} times as long with DOP853 and "
+                f"on the same reduced model MuJoCo's RK4 takes {ratio(RK4, 1e-3)} times as long as "
+                f"mjbeer's best setting for an error of 1e-3 rad, and {ratio(RK4, 1e-6)} times for "
+                f"1e-6 rad; without MuJoCo, compiled equations that were derived by hand take "
+                f"{ratio(COMPILED_DOP853, 1e-6)} times as long with DOP853 and "
                 f"{ratio(HEYOKA, 1e-6)} times with heyoka, for 1e-6 rad "
                 "([error against run time](docs/benchmark.md))",
             ),
@@ -164,8 +165,8 @@ def measured() -> str:
     used = [f"Python {machine['python']}"]
     used += [f"{name} {versions[key]}" for key, name in PEERS.items()]
     return prose(
-        f"It was measured in November 2026 on {machine['cores']} cores of an {machine['processor']}, of which a run uses "
-        f"one, with {', '.join(used)}."
+        f"It was measured in November 2026 on {machine['cores']} cores of an {machine['processor']}, "
+        f"of which a run uses one, with {', '.join(used)}."
     )
 
 
@@ -173,12 +174,14 @@ def ranges() -> str:
     """Sentences on RK4 and on the tools without MuJoCo."""
     finest = benchmark_tables.FINEST
     return prose(
-        f"On the same model MuJoCo's RK4 takes {ratio(RK4, 1e-3)} times as long as mjbeer's best setting for an error of "
-        f"1e-3 rad, and {ratio(RK4, 1e-6)} times for 1e-6 rad. For 1e-11 rad it takes {ratio(RK4, finest)} times as long; "
-        "that is what order 4 costs against order 13, and matters to nobody who needs three digits. Without MuJoCo, DOP853 on "
-        f"compiled equations takes {ratio(COMPILED_DOP853, 1e-3)} times as long as mjbeer's best setting for 1e-3 rad, and "
-        f"{ratio(COMPILED_DOP853, 1e-6)} times for 1e-6 rad; heyoka takes {ratio(HEYOKA, 1e-3)} and "
-        f"{ratio(HEYOKA, 1e-6)} times as long; SciPy's odeint takes {ratio(ODEINT, 1e-3)} and {ratio(ODEINT, 1e-6)} times."
+        f"On the same model MuJoCo's RK4 takes {ratio(RK4, 1e-3)} times as long as mjbeer's best "
+        f"setting for an error of 1e-3 rad, and {ratio(RK4, 1e-6)} times for 1e-6 rad. For 1e-11 rad "
+        f"it takes {ratio(RK4, finest)} times as long; that is what order 4 costs against order 13, "
+        "and matters to nobody who needs three digits. Without MuJoCo, DOP853 on compiled equations "
+        f"takes {ratio(COMPILED_DOP853, 1e-3)} times as long as mjbeer's best setting for 1e-3 rad, "
+        f"and {ratio(COMPILED_DOP853, 1e-6)} times for 1e-6 rad; heyoka takes {ratio(HEYOKA, 1e-3)} "
+        f"and {ratio(HEYOKA, 1e-6)} times as long; SciPy's odeint takes {ratio(ODEINT, 1e-3)} and "
+        f"{ratio(ODEINT, 1e-6)} times."
     )
 
 

@@ -4,13 +4,14 @@ import math
 import pathlib
 from collections import Counter
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import pytest
 
 from mjbeer.cli.app import main
 from mjbeer.exceptions import DivergenceError
-from mjbeer.studies.benchmark import ladders, other_tools, timing
+from mjbeer.studies.benchmark import benchmark_tables, ladders, other_tools, timing, work_precision
 from mjbeer.studies.benchmark.ladders import Ladders
 from mjbeer.studies.benchmark.other_tools import (
     HEYOKA,
@@ -161,21 +162,35 @@ def test_a_long_motion_has_few_settings_that_meet_every_sample() -> None:
 
 
 def test_the_command_writes_everything(
-    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    measured: Benchmark,
+    tmp_path: pathlib.Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
-    reason = "libfmt.so.11: cannot open shared object file: No such file or directory"
-    shorten(monkeypatch)
-    monkeypatch.setattr(other_tools, "absent", lambda: {HEYOKA: reason})
+    asked = []
+
+    def conduct_no_more(*arguments: Any) -> Benchmark:
+        asked.append(arguments[:2])
+        return measured
+
+    monkeypatch.setattr(timing, "conduct", conduct_no_more)
     folder = tmp_path / "new"
-    assert main(["benchmark", "frozen", "--output", str(folder)]) == 0
+    assert main(["benchmark", "frozen", "--quick", "--output", str(folder)]) == 0
+    assert asked == [(["frozen"], True)]
     names = {path.name for path in folder.iterdir()}
     assert names == {"study.json", "summary.md", ".lock", ".mjbeer", "work_precision.svg"}
     summary = (folder / "summary.md").read_text()
-    for text in (
-        "fastest setting for an error",
-        ODEINT,
-        "Whole calls",
-        f"\nheyoka is absent: {reason}\n",
-    ):
+    for text in ("fastest setting for an error", ODEINT, "Whole calls"):
         assert text in summary
     assert "fastest setting" in capsys.readouterr().out
+
+
+def test_the_summary_says_what_was_absent(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: pathlib.Path
+) -> None:
+    reason = "libfmt.so.11: cannot open shared object file: No such file or directory"
+    shorten(monkeypatch, {Curve("reduced", "RK4"): (16e-3,)})
+    monkeypatch.setattr(other_tools, "absent", lambda: {HEYOKA: reason})
+    monkeypatch.setattr(work_precision, "draw", lambda *_: None)
+    benchmark_tables.write(conduct(["frozen"], True, None), tmp_path)
+    assert f"\nheyoka is absent: {reason}\n" in (tmp_path / "summary.md").read_text()

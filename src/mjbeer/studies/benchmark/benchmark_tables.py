@@ -33,10 +33,10 @@ _CONTACT = (
 )
 """The curves whose convergence with the timestep is shown."""
 _NOTES = """
-The run time is that of one call that returns 65 samples of 2.048 s of motion, in one thread and with warm caches: the
-least of the rounds, and the largest where two times are given. What is done once, to build and compile a model or to
-compile equations, is not in it; whole calls and study.json have it. Errors are against exact theory. "Compiled
-equations" and heyoka integrate equations that were derived by hand, without MuJoCo; odeint is LSODA.
+The run time is the processor's time of one call that returns 65 samples of 2.048 s of motion, in one thread and with
+warm caches: the least of the rounds, and the largest where two times are given. What is done once, to build and
+compile a model or to compile equations, is not in it; whole calls and study.json have it. Errors are against exact
+theory. "Compiled equations" and heyoka integrate equations that were derived by hand, without MuJoCo; odeint is LSODA.
 
 ![Work-precision diagram](work_precision.svg)
 """

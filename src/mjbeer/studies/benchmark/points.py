@@ -116,7 +116,7 @@ class Point:
     failure: str | None = None
     """The message of the exception if the run failed."""
     times: list[float] = field(default_factory=list)
-    """Run times in the rounds [s]."""
+    """Run times in the rounds [s], of the processor."""
 
     @property
     def curve(self) -> Curve:
@@ -151,7 +151,12 @@ def milliseconds(time: float) -> str:
 
 
 def spread(times: Sequence[float]) -> str:
-    """Return the least and the largest of some times [s] as text, in milliseconds."""
+    """Return the least and the largest of some times [s] as text, in milliseconds.
+
+    Infinite times are those of what no setting reached.
+    """
+    if not math.isfinite(max(times)):
+        return milliseconds(math.inf)
     least = f"{1e3 * min(times):.3g}"
     largest = f"{1e3 * max(times):.3g}"
     return f"{least} ms" if least == largest else f"{least} to {largest} ms"
