@@ -41,8 +41,8 @@ LARGE = tuple(64e-3 / 2**k for k in range(7))
 SHORT: Ladders = {
     Curve("reduced", "RK4"): STEPS,
     Curve("reduced", "DOP853"): LARGE,
-    Curve("reduced", "mjbeer", TOLERANCE): (1e-6, 1e-9),
-    Curve("contact", "DOP853"): LARGE[:5],
+    Curve("reduced", "mjbeer", TOLERANCE): (1e-6,),
+    Curve("contact", "DOP853"): LARGE[:2],
     Curve("contact, defaults", "Euler"): (2e-3,),
     Curve(ODEINT, "", TOLERANCE): (1e-3, 1e-6),
     Curve(WHOLE_CALL, "", TOLERANCE): (1e-6,),
