@@ -80,7 +80,7 @@ def report(given: Namespace) -> int:
 
 
 def benchmark(given: Namespace) -> None:
-    """Measure error against run time of integrators and other tools, in four minutes."""
+    """Measure error against run time of integrators and other tools, in ten minutes."""
     from mjbeer.studies.benchmark import benchmark_tables, timing
 
     names = [require.choice("scene", name, CASES) for name in given.scenes or CASES]

@@ -24,7 +24,7 @@ from mjbeer.output import files
 from mjbeer.output.plots import Picture
 from mjbeer.paper import stories
 from mjbeer.report import films
-from mjbeer.studies.benchmark import benchmark_tables
+from mjbeer.studies.benchmark import benchmark_tables, work_precision
 from mjbeer.studies.benchmark.points import SHIPPED, Benchmark
 from mjbeer.studies.stability import stability_maps
 from mjbeer.studies.study import machine
@@ -73,7 +73,7 @@ def plot_jobs(folder: pathlib.Path) -> list[PlotJob]:
     """Return the plots of the page, by the names of files in a folder, into which maps are drawn that lie beside it."""
     benchmark, maps = Benchmark.load(SHIPPED), stability_maps.figures(stability_maps.load())
     drawn: dict[str, Callable[[Any], None]] = {
-        f"error-{case}": partial(benchmark_tables.draw, replace(benchmark, points=benchmark.of(case)))
+        f"error-{case}": partial(work_precision.draw, replace(benchmark, points=benchmark.of(case)))
         for case in benchmark.cases
     }
     drawn |= {story.name: story.plot for story in stories.STORIES} | maps
@@ -93,9 +93,6 @@ def page(
     environment = Environment(loader=loader, autoescape=True, undefined=StrictUndefined)
     environment.filters |= {"mathml": mathml, "share": share, "marked": _marked, "data": _data}
     benchmark, maps = Benchmark.load(SHIPPED), stability_maps.load()
-    # The least and the largest run time of another tool over that of mjbeer's best setting, at equal error.
-    spans = {name: benchmark_tables.span(benchmark, name) for name in ("MuJoCo RK4", "heyoka")}
-    slower = {name: " to ".join(map(benchmark_tables.two_digits, span)) for name, span in spans.items()}
     runs, border = stability_maps.summary(maps["maps"])
     claims = {(claim.equation, claim.quantity): claim for claim in paper.claims() if claim.misprint}
     misprints = [
@@ -108,7 +105,7 @@ def page(
         errors=[plots[f"error-{case}"] for case in benchmark.cases],
         benchmark=benchmark,
         costs=benchmark_tables.tables(benchmark),
-        slower=slower,
+        ratio_range=partial(benchmark_tables.ratio_range, benchmark),
         maps=maps,
         map=plots[_MAP],
         families=stability_maps.FAMILIES,
