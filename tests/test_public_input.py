@@ -32,7 +32,6 @@ from mjbeer import (
 )
 from mjbeer.drawing import film, video
 from mjbeer.exceptions import ParameterError
-from mjbeer.model.export import export
 from mjbeer.model.setting import (
     MJBEER_INTEGRATORS,
     MUJOCO_INTEGRATORS,
@@ -135,7 +134,7 @@ NOT_ASKED = {"initial_axis", "replace", "plot", "to_csv", "to_dataframe", "video
 
 def public() -> Iterator[tuple[str, Callable[..., object]]]:
     """Everything that is called: public names, their class methods, the methods of what they
-    return, and some more."""
+    return, and `Setting`."""
     for name in mjbeer.__all__:
         thing = getattr(mjbeer, name)
         # `fit` alone makes a Fit, and `simulate` a Run.
@@ -147,7 +146,6 @@ def public() -> Iterator[tuple[str, Callable[..., object]]]:
         kind = type(instance)
         yield from methods(f"{kind.__name__}()", kind, instance)
     yield "Setting", Setting
-    yield "export", export
 
 
 def methods(name: str, kind: type, owner: object) -> Iterator[tuple[str, Callable[..., object]]]:
