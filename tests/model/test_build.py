@@ -297,3 +297,13 @@ def test_reset_finds_the_joints_in_another_world_and_says_where_there_are_none()
     empty = mujoco.MjSpec().compile()
     with pytest.raises(ParameterError, match="the model must have the joints of a scene"):
         mjbeer.reset(empty, mujoco.MjData(empty), frozen(), 0.3)
+
+
+@pytest.mark.parametrize("rolling", ["equality", "contact"])
+def test_a_nearly_singular_inertia_is_an_error_and_no_warning(rolling: Rolling) -> None:
+    """MuJoCo's compiler only warns of it."""
+    can = Can(radius=100.0, length=100.0, mass=10.0, inertia=1e-7)
+    load = Load(mass=1e4, offset=68.7, inertia=1e11)
+    scene = Scene(can, load, incline=-1.205, gravity=1.0)
+    with pytest.raises(UnsupportedError, match="too unequal"):
+        simulate(scene, 0.1, rolling=rolling)

@@ -83,9 +83,7 @@ def write_numbers(
     if smallest < mujoco.mjMINVAL:
         raise mjcf_file.refused("mass and inertia of moving bodies must be larger than mjMINVAL")
     if data.warning.number[_INERTIA_WARNING]:
-        raise mjcf_file.refused(
-            "masses and inertias are too unequal for it to compute accelerations"
-        )
+        raise mjcf_file.refused(mjcf_file.TOO_UNEQUAL)
     mujoco.mj_resetData(model, data)
 
 

@@ -3,6 +3,7 @@
 import copy
 import functools
 import pathlib
+import warnings
 import xml.etree.ElementTree as ET
 from collections.abc import Collection
 from typing import TypeAlias
@@ -14,6 +15,8 @@ from mjbeer.exceptions import TemplateError, UnsupportedError
 
 Parameters: TypeAlias = dict[tuple[str, str], tuple[float, ...] | str]
 """Numbers by element and attribute, as in `ModelNumbers.parameters`."""
+TOO_UNEQUAL = "masses and inertias are too unequal for it to compute accelerations"
+"""Why MuJoCo cannot represent a scene whose inertia matrix is nearly singular."""
 
 
 def read(path: pathlib.Path) -> ET.Element:
@@ -154,10 +157,15 @@ def compile_spec(spec: mujoco.MjSpec) -> mujoco.MjModel:
     Raises:
       UnsupportedError: if MuJoCo cannot represent such a model.
     """
-    try:
-        return spec.compile()
-    except ValueError as error:
-        raise refused(one_line(error)) from error
+    with warnings.catch_warnings():
+        # MuJoCo only warns, and would step such a model with wrong accelerations.
+        warnings.filterwarnings("error", "Inertia matrix is too close to singular", UserWarning)
+        try:
+            return spec.compile()
+        except UserWarning as warning:
+            raise refused(TOO_UNEQUAL) from warning
+        except ValueError as error:
+            raise refused(one_line(error)) from error
 
 
 def refused(reason: str) -> UnsupportedError:
