@@ -150,7 +150,7 @@ OPTIONS = {  # of each command; if a scene comes first, these come after that of
     "benchmark": (
         Option("scenes", f"of {', '.join(CASES)}; by default all", [], str),
         Option("--output", _FOLDER, "benchmark", Path),
-        Option("--quick", "try fewer timesteps and tolerances; takes two minutes", False),
+        Option("--quick", "try fewer timesteps and tolerances; takes four minutes", False),
     ),
     "stability": (
         Option("--output", f"{_FOLDER}; an interrupted study in it is continued", "stability", Path),
