@@ -51,6 +51,6 @@ def test_the_command(
     assert shown == {"letters.svg", "told.svg", "stories.md"} | ({"told.mp4"} if filmed else set())
     assert all(each in text for each in ("## told", "![told](told.svg)", "A stub's story."))
     assert ("[Film](told.mp4)" in text) == filmed
-    missing = opengl.missing(["told.mp4"])
+    missing = opengl.missing_films_message(["told.mp4"])
     assert (f"Films: {missing}\n" in text, missing in err) == (bool(problem), bool(problem))
     assert f"the stories are in {tmp_path / 'stories.md'}\n" in err

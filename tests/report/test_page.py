@@ -106,7 +106,7 @@ def test_without_opengl_a_report_has_all_but_films_and_says_so(
     assert not stubs.draw(monkeypatch)
     monkeypatch.setattr(opengl, "problem", lambda: "there is none")
     assert main(["report", "--output", str(tmp_path)]) == 1
-    line = opengl.missing([*FILMS, "told"])
+    line = opengl.missing_films_message([*FILMS, "told"])
     assert f"{line}\nthe report is in " in capsys.readouterr().err
     text = (tmp_path / "index.html").read_text()
     assert all(words in text for words in (line.replace("&", "&amp;"), "2.0e-03 <strong>FAIL</strong>"))

@@ -8,8 +8,9 @@ from matplotlib.axes import Axes
 from rich.console import Console
 
 from mjbeer.drawing import opengl, video
-from mjbeer.drawing.film import Film, MotionFilm, Race, Runner
-from mjbeer.drawing.overlay import Look
+from mjbeer.drawing.film import Film, MotionFilm
+from mjbeer.drawing.race import Race, Runner
+from mjbeer.drawing.style import FilmStyle
 from mjbeer.drawing.video import FilmJob, PlotJob
 from mjbeer.drawing.words import in_degrees, in_words
 from mjbeer.output import files
@@ -85,7 +86,7 @@ STORIES = (
         MotionFilm(
             story_plots.HESITATION,
             speed=0.1,
-            look=Look(
+            style=FilmStyle(
                 "A can hesitates in every swing of its beer", ("u_dot", "ahead"), ("phi", "ghost"), notes=("hesitates",)
             ),
         ),
@@ -104,7 +105,7 @@ STORIES = (
         MotionFilm(
             story_plots.LOOPING,
             speed=0.1,
-            look=Look(
+            style=FilmStyle(
                 "Beer that loops in its can all but lifts it",
                 ("normal", "phi"),
                 ("phi", "normal"),
@@ -123,7 +124,7 @@ STORIES = (
         MotionFilm(
             story_plots.ROCKING,
             speed=0.5,
-            look=Look("Frozen beer, let go below: it rocks and stays", ("phi", "u"), ("phi", "paths")),
+            style=FilmStyle("Frozen beer, let go below: it rocks and stays", ("phi", "u"), ("phi", "paths")),
         ),
     ),
     Story(
@@ -149,7 +150,7 @@ STORIES = (
             story_plots.PARTING,
             speed=0.04,
             still=0.9,
-            look=Look(
+            style=FilmStyle(
                 "With μ = 1, frozen beer slips before it hops",
                 ("lift", "slip"),
                 ("paths",),
@@ -192,7 +193,7 @@ def write(folder: pathlib.Path, filmed: bool, console: Console) -> str:
       RenderingError: if a film cannot be drawn for another reason, as without ffmpeg.
     """
     orders = films(folder) if filmed else []
-    missing = opengl.missing([order.path.name for order in orders]) if orders and opengl.problem() else ""
+    missing = opengl.missing_films_message([order.path.name for order in orders]) if orders and opengl.problem() else ""
     files.write(folder / "letters.svg", letters())
     plots = [PlotJob(story.plot, folder / story.name) for story in STORIES]
     video.produce(plots if missing else [*orders, *plots], console)

@@ -10,10 +10,10 @@ import numpy as np
 
 from mjbeer.drawing.camera import View, circle
 from mjbeer.drawing.film import Film, RenderPlan
-from mjbeer.drawing.overlay import HEIGHT, STRIP, head
+from mjbeer.drawing.overlay import HEIGHT, STRIP, draw_title
 from mjbeer.drawing.scene import Display
 from mjbeer.drawing.sheet import INK, Sheet
-from mjbeer.drawing.strip import Chart, Line, Strip
+from mjbeer.drawing.strip import Chart, ChartStrip, Line
 from mjbeer.model.build import build
 from mjbeer.model.looks import WALL
 from mjbeer.theory.scene import sliding
@@ -99,7 +99,7 @@ class Carry(Film):
         view = View.towards(_EYE, np.reshape(corners, (-1, 3)), (width, height - top - below), top, 0.02)
         lines = [Line(f"moved in {each:g} s", run.time, run.force, MOVES[each]) for each, run in runs.items()]
         lines += [Line("solid beer", run.time, (can.mass + can.can.mass) * run.acceleration) for run in runs.values()]
-        strip = Strip([Chart("force [N]", lines)], width, below)
+        strip = ChartStrip([Chart("force [N]", lines)], width, below)
         display.draw_empty(sheet, view)
         empty = sheet.part(top, height - below)
         for time in times:
@@ -113,7 +113,7 @@ class Carry(Film):
                 trust = "only a picture" if highest > QUANTITATIVE else "within 0.1 R"
                 said, side = (f"in {duration:g} s", f"rises by {highest:.2f} R: {trust}"), [-0.065, 0, can.height]
                 sheet.plate(view.pixel(place + np.array(side)), said, MOVES[duration], (1, 0.5))
-            head(sheet, self.title, "half a 12-oz can of beer, carried 0.4 m", time, self.speed)
+            draw_title(sheet, self.title, "half a 12-oz can of beer, carried 0.4 m", time, self.speed)
             strip.draw(sheet, time, height - below)
             yield sheet.picture()
 

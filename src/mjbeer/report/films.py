@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
-from mjbeer.drawing.film import Film, MotionFilm, Race, Runner
-from mjbeer.drawing.overlay import Look
+from mjbeer.drawing.film import Film, MotionFilm
+from mjbeer.drawing.race import Race, Runner
+from mjbeer.drawing.style import FilmStyle
 from mjbeer.drawing.video import FilmJob
 from mjbeer.paper import stories
 from mjbeer.report.carry import Carry
@@ -101,7 +102,7 @@ FILMS: dict[str, Film] = {  # by the names of their files
         caption="Half a can of beer, let go at φ = 60°, slides in its can without friction and swings. The can goes to "
         "and fro about the dashed one, which accelerates evenly: it hesitates with every swing.",
         still=0.4,
-        look=Look("Beer slides in its can, and the can hesitates", **_HESITATES),
+        style=FilmStyle("Beer slides in its can, and the can hesitates", **_HESITATES),
     ),
     "frozen": MotionFilm(
         partial(simulate, frozen(), 0.82, math.pi, tolerance=1e-9),
@@ -109,7 +110,7 @@ FILMS: dict[str, Film] = {  # by the names of their files
         caption="Frozen beer is let go on top, and rolls down ever faster, in jerks. The film ends just before the can "
         "would leave the incline.",
         still=0.55,
-        look=Look(
+        style=FilmStyle(
             "Frozen beer rolls down in jerks",
             ("normal", "u"),
             ("paths", "normal", "friction"),
@@ -122,7 +123,7 @@ FILMS: dict[str, Film] = {  # by the names of their files
         caption="The wheel goes to and fro about the dashed one, which accelerates evenly: it hesitates whenever its "
         "bob is uphill, and runs ahead whenever it is downhill, for nothing but their weight drives them together.",
         still=0.4,
-        look=Look("A pendulum in a wheel: does the wheel roll evenly?", **_HESITATES),
+        style=FilmStyle("A pendulum in a wheel: does the wheel roll evenly?", **_HESITATES),
     ),
     "hoop": MotionFilm(
         HOP,
@@ -132,7 +133,7 @@ FILMS: dict[str, Film] = {  # by the names of their files
         "weight of both. After 0.10 s the bar comes up behind and lifts the hoop, which flies 34 mm high: about its "
         "radius. The film ends just before the landing.",
         still=0.2,
-        look=Look(
+        style=FilmStyle(
             "Why does a hoop fly? The bar on its rim lifts it",
             ("lift", "normal"),
             ("paths", "normal"),

@@ -56,7 +56,7 @@ def write(folder: pathlib.Path, quick: bool, console: Console) -> tuple[Validati
     """
     with tempfile.TemporaryDirectory() as work:
         filmed = films.film_jobs(pathlib.Path(work), quick)
-        not_drawn = opengl.missing([each.path.stem for each in filmed]) if opengl.problem() else ""
+        not_drawn = opengl.missing_films_message([each.path.stem for each in filmed]) if opengl.problem() else ""
         filmed = [] if not_drawn else filmed
         # The checks take longest, and compile what the films run; plots are quick.
         checks = SimpleNamespace(path=folder / "checks", write=partial(validate, None))

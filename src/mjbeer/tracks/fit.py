@@ -111,13 +111,14 @@ class Fit:
     def video(self, path: str | os.PathLike[str], width: int = 1280, height: int = 720, speed: float = 1.0) -> None:
         """Write a film of `run` (.mp4), the tracked places as marks; arguments and errors are as in `mjbeer.render`."""
         from mjbeer.drawing.film import MotionFilm
-        from mjbeer.drawing.overlay import Look
+        from mjbeer.drawing.style import FilmStyle
         from mjbeer.drawing.video import write
 
         time = self.track.time - self.values["released"]
         u = np.interp(time, self.run.time, self.run.u) + self.track.along - self.model["along"]
-        look = Look("A filmed can and the fitted motion", marks=("measured",), measured=np.stack([time, u], axis=1))
-        write(MotionFilm(lambda: self.run, look, speed=speed).plan(), require.path(path), width, height, 30)
+        measured = np.stack([time, u], axis=1)
+        style = FilmStyle("A filmed can and the fitted motion", marks=("measured",), measured=measured)
+        write(MotionFilm(lambda: self.run, style, speed=speed).plan(), require.path(path), width, height, 30)
 
 
 def fit(
