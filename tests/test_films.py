@@ -21,9 +21,8 @@ OF_STORIES = {story.name: story.film for story in stories.STORIES if story.film}
 ALL: dict[str, Film] = OF_MOTIONS | OF_STORIES
 FPS = 25
 """Pictures per second of every film of a report."""
-TURN = 0.6
-"""Largest turn from picture to picture [rad]: a tenth of a circle. From half a circle on, the
-eye sees it backwards."""
+TURN = 2 * np.pi / 9
+"""Largest turn from picture to picture [rad]. From half a circle on, the eye sees it backwards."""
 
 
 def motions(film: Film) -> list[Trajectory]:

@@ -61,7 +61,7 @@ def test_validate_tells_a_failure_whatever_is_asked_for(
 ) -> None:
     stubs.validate(monkeypatch, first=1e-5, second=error)
     seen = ("good", lambda: 1e-6), ("other", lambda: error)
-    rows = [Claim(name, "a stub", Witness("none", see), Bound(1e-3, ""), "1 + seen - 1") for name, see in seen]
+    rows = [Claim(name, "a stub", Witness("none", see), Bound(1e-3, ""), "observed", scale="1") for name, see in seen]
     monkeypatch.setattr(paper, "claims", lambda: rows)
     assert main(["validate", *option.split()]) == status
     out, err = capsys.readouterr()
