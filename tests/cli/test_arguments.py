@@ -93,9 +93,8 @@ def test_the_defaults_are_those_of_python(words: str, meant: object) -> None:
     given = parse(words.split())
     for name, parameter in inspect.signature(meant).parameters.items():
         if hasattr(given, name) and name not in ("scene", "phi0", "output", "duration"):
-            assert getattr(given, name) in (parameter.default, None), (
-                name
-            )  # which is left to Python's default
+            # Which is left to Python's default.
+            assert getattr(given, name) in (parameter.default, None), name
 
 
 def test_the_default_duration_is_that_of_python() -> None:

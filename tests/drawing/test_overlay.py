@@ -132,9 +132,8 @@ def test_forces_push_the_can_where_it_touches_the_incline() -> None:
     motion = exact(frozen(), TIMES, 2.0)
     sheet, view, (u, *_) = drawn(motion, 0.1, "normal", "friction")
     (tail, head), (start, end) = sheet.arrows
-    assert head == pytest.approx(
-        place(motion, view, u, -WALL * 0.033), abs=ROUNDING
-    )  # under the drawn wall
+    # Under the drawn wall.
+    assert head == pytest.approx(place(motion, view, u, -WALL * 0.033), abs=ROUNDING)
     assert differ(direction(np.array([tail, head])), math.pi / 2 - motion.scene.incline) < ROUNDING
     normal = float(np.interp(0.1, TIMES, motion.forces.normal))
     friction = float(np.interp(0.1, TIMES, motion.forces.friction))
@@ -157,9 +156,8 @@ def test_the_ghost_is_where_even_acceleration_has_it() -> None:
     ring = sheet.lines[0]
     middle = (ring.min(axis=0) + ring.max(axis=0)) / 2
     even = 9.81 * math.sin(motion.scene.incline) * 0.4**2 / 2
-    assert middle == pytest.approx(
-        place(motion, view, even, 0.033), abs=0.2
-    )  # a polygon of 48 corners
+    # A polygon of 48 corners.
+    assert middle == pytest.approx(place(motion, view, even, 0.033), abs=0.2)
     assert u - even == pytest.approx(motion.scene.load.offset * math.sin(phi))
 
 
@@ -197,9 +195,8 @@ def test_gravity_is_plumb_and_the_incline_s_angle_and_distances_are_as_written(
         last = arc[-1] - corner
         assert arc[0][1] == pytest.approx(corner[1], abs=1e-9)
         assert math.degrees(math.atan2(-last[1], abs(last[0]))) == pytest.approx(abs(incline))
-        assert board.pixel(view, board.along(view, corner[0])) == pytest.approx(
-            corner, abs=PIXEL
-        )  # on the underside
+        # On the underside.
+        assert board.pixel(view, board.along(view, corner[0])) == pytest.approx(corner, abs=PIXEL)
 
 
 def noted(run: Trajectory, name: str) -> Spans:

@@ -30,9 +30,8 @@ def run(scene: Scene, phi0: float = 0.0, duration: float = 2.5) -> Runner:
 )
 def test_times_are_those_of_even_acceleration(scene: Scene, acceleration: float) -> None:
     time = math.sqrt(2 * 1.0 / (acceleration * 9.81 * math.sin(INCLINE)))
-    assert run(scene).finish(1.0) == pytest.approx(
-        time, rel=2e-3
-    )  # a fill of 0.01 is a thousandth of the mass
+    # A fill of 0.01 is a thousandth of the mass.
+    assert run(scene).finish(1.0) == pytest.approx(time, rel=2e-3)
 
 
 def test_the_plates_have_all_times() -> None:

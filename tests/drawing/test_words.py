@@ -72,7 +72,8 @@ def test_a_plot_shows_what_is_asked_for() -> None:
 def test_a_video_is_written_or_shown(
     tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    run, shown = simulate(frozen(), 0.2, 1.0), []
+    run = simulate(frozen(), 0.2, 1.0)
+    shown = []
     monkeypatch.setattr("IPython.display.display", shown.append)
     run.video(tmp_path / "run.mp4", 320, 180, progress=False)
     assert (tmp_path / "run.mp4").read_bytes()[4:8] == b"ftyp"

@@ -87,7 +87,7 @@ def test_a_misprint_that_is_none_is_found_out(row: Claim) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("row", ROWS, ids=NAMES)
 def test_each_term_counts(row: Claim) -> None:
-    """A form with one of its terms off by a hundredth fails, unless that term is next to nothing."""
+    """A form with one of its terms off by a hundredth fails, unless that is next to nothing."""
     observed = row.witness.observe()
     right = terms(row.residual, observed)
     scale = value(row.scale, observed) if row.scale else None

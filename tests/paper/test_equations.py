@@ -123,7 +123,7 @@ def test_every_equation_of_a_motion_is_derived() -> None:
 @pytest.mark.costly
 @pytest.mark.parametrize("row", DERIVED, ids=lambda row: f"{row.equation} {row.quantity}")
 def test_derived(row: Claim) -> None:
-    """No term vanishes by itself, so that none could be left out; and a misprint does not follow."""
+    """No term vanishes by itself, so that none can be left out; a misprint does not follow."""
     right = terms(row.residual, Q)
     assert vanishes(sum(right), row.witness)
     for term in right:

@@ -62,12 +62,10 @@ def test_jackson_s_two_facts() -> None:
         assert first_metre(350, incline) > 0.9
     for incline, volume in zip(INCLINES, (13.0, 9.0, 7.5), strict=True):
         assert first_metre(volume, incline, drag=DRAG) < 0.5
-        speed = math.sqrt(
-            GRAVITY * math.sin(incline) * 1.0
-        )  # with half of g sin(alpha), after a metre
-        film = FILM_LOAD * math.sqrt(
-            LIQUIDS["water"].viscosity * speed / GRAVITY
-        )  # at most, over a l [m]
+        # With half of g sin(alpha), after a metre.
+        speed = math.sqrt(GRAVITY * math.sin(incline) * 1.0)
+        # At most, divided by a l [m].
+        film = FILM_LOAD * math.sqrt(LIQUIDS["water"].viscosity * speed / GRAVITY)
         assert volume > 1e6 * film * CAN.radius * CAN.length
 
 

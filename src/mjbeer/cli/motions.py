@@ -113,7 +113,7 @@ class Summary:
         return "\n".join(line for line in lines if line) + "\n"
 
     def json(self) -> str:
-        """Return the figures as a JSON object, with units in the names; infinity and NaN are null."""
+        """Return the figures as a JSON object, units in the names; infinity and NaN are null."""
         content = {figure.key: figure.value for figure in self.key_figures}
         content |= {"warnings": self.trajectory.warnings, "notes": self.notes}
         return to_json(content, indent=2)

@@ -81,7 +81,7 @@ def validate(given: Namespace) -> int:
 
 
 def report(given: Namespace) -> int:
-    """Validate, draw films and plots, and write a page of it all; exit status 1 if a check fails."""
+    """Validate, draw films and plots, and write a page of all; exit status 1 if a check fails."""
     from mjbeer.report.page import write
 
     with owned(given.output, "mjbeer report"), replaced(given.output) as folder:
@@ -105,7 +105,7 @@ def benchmark(given: Namespace) -> None:
 
 
 def stability(given: Namespace) -> int:
-    """Test stiff cases and limits of stability (eight minutes); exit status 1 if theory disagrees."""
+    """Test stiff cases and limits of stability, in minutes; exit status 1 if theory disagrees."""
     from mjbeer.studies.stability import stability_study as stability
 
     with owned(given.output, stability.COMMAND):

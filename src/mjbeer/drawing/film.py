@@ -105,9 +105,8 @@ def _pictures(
     """Draw the pictures of a motion: the header above, then the scene, and the charts below."""
     sheet = Sheet(width, height)
     display = Display([trajectory.scene])
-    readable = (
-        len(trajectory.time) > 1 and width > 24 * sheet.unit
-    )  # charts, in a picture this wide
+    # In a narrower picture charts are not readable.
+    readable = len(trajectory.time) > 1 and width > 24 * sheet.unit
     below = round(STRIP * sheet.unit) if style.strips and readable else 0
     top = round(HEADER * sheet.unit)
     for_notes = round(NOTE * sheet.unit) if style.notes else 0

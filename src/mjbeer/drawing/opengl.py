@@ -31,9 +31,8 @@ def context() -> Any:
         # Not mujoco.GLContext: that is what MUJOCO_GL said when MuJoCo was imported, a window
         # system's by default.
         library = importlib.import_module(f"mujoco.{name}" if sys.platform == "linux" else "mujoco")
-        opened = library.GLContext(
-            16, 16
-        )  # pictures are drawn into a buffer of MuJoCo's, of any size
+        # Pictures are drawn into a buffer of MuJoCo's, of any size.
+        opened = library.GLContext(16, 16)
     except Exception as error:  # of what kind depends on what is missing
         raise RenderingError(
             f"no off-screen OpenGL ({name}): {error}\n"

@@ -91,8 +91,7 @@ class Note(NamedTuple):
     """What a film says while a motion does something."""
 
     words: str
-    """What it says, with places for the names of {body} and {load}, and for the largest {lift}
-    [mm]."""
+    """What it says, with places for {body} and {load}, by name, and the largest {lift} [mm]."""
     holds: Callable[[Trajectory], np.ndarray]
     """Returns at which samples of a motion it does so."""
 
@@ -171,9 +170,8 @@ def draw_warning(sheet: Sheet, doubts: Sequence[str], top: int) -> None:
     """
     if not doubts:
         return
-    letters = int(
-        (sheet.width / sheet.unit - 4) / 0.65
-    )  # of a line; the mean letter is 0.6 units wide
+    # The mean letter is 0.6 units wide.
+    letters = int((sheet.width / sheet.unit - 4) / 0.65)
     lines = ["Not to be relied on"]
     for doubt in doubts:
         reason, *_ = doubt.partition(" (")

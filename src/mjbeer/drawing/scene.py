@@ -370,9 +370,8 @@ class Painter:
 
     def _place_eye(self, view: View) -> None:
         """Let the scene be seen in a view, by light from its eye."""
-        near = (
-            0.2 * view.distance
-        )  # nothing is drawn nearer to the eye than this, or beyond `frustum_far`
+        # Nothing is drawn nearer to the eye than this, or beyond `frustum_far`.
+        near = 0.2 * view.distance
         for eye in self._scene.camera:  # two of them, for stereo; MuJoCo draws their mean
             eye.pos = view.eye
             eye.up = view.axes[1]

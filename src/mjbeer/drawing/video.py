@@ -189,9 +189,8 @@ class FilmJob:
         """Write the film, and return its still picture as WebP."""
         plan = self.film.plan()
         write(plan, self.path, self.width, self.height, self.fps)
-        still = (
-            self.film.still or (2 * plan.start + plan.end) / 3
-        )  # at the start nothing has happened yet
+        # At the start nothing has happened yet.
+        still = self.film.still or (2 * plan.start + plan.end) / 3
         (picture,) = plan.draw(np.array([still]), self.width, self.height)
         file = io.BytesIO()
         Image.fromarray(picture).save(file, "WEBP", quality=70)

@@ -155,24 +155,34 @@ _AMPLITUDE = Bound(1e-6, "the amplitude: 3e-7")
 _SLIPS = Bound(1e-6, "the can slips a little in its soft contact")
 
 CLAIMS = (
-    Claim("(50)", "u = a phi", _TOUCHES, _SLIPS, "u - a*phi"),
-    Claim("(50)", "s = a phi - b sin(phi)", _TOUCHES, _SLIPS, "s - a*phi + b*sin(phi)"),
+    Claim("(50)", "u = a phi", _TOUCHES, _SLIPS, residual="u - a*phi"),
+    Claim("(50)", "s = a phi - b sin(phi)", _TOUCHES, _SLIPS, residual="s - a*phi + b*sin(phi)"),
     Claim(
-        "(51)", "T", ROLL_DOWN, HELD, "3*m*a**2/4*phi_dot**2 - m*a*b*cos(phi)*phi_dot**2 - kinetic"
+        "(51)",
+        "T",
+        ROLL_DOWN,
+        HELD,
+        residual="3*m*a**2/4*phi_dot**2 - m*a*b*cos(phi)*phi_dot**2 - kinetic",
     ),
-    Claim("(51)", "V", ROLL_DOWN, EXACT, "-m*g*a*phi*sin(alpha) - m*g*b*cos(theta) - potential"),
-    Claim("(52)", "equation of motion of phi", ROLL_DOWN, HELD, _EQ_52.format("")),
+    Claim(
+        "(51)",
+        "V",
+        ROLL_DOWN,
+        EXACT,
+        residual="-m*g*a*phi*sin(alpha) - m*g*b*cos(theta) - potential",
+    ),
+    Claim("(52)", "equation of motion of phi", ROLL_DOWN, HELD, residual=_EQ_52.format("")),
     Claim(
         "footnote 8",
         "the equation as typed in: 3(1) sin(x) (x')^2; printed 3(0.5)",
         FOOTNOTE_8,
         HELD,
-        _EQ_52.format(""),
-        Misprint(
+        residual=_EQ_52.format(""),
+        misprint=Misprint(
             0.32,
-            PRINTED_8,
-            "Frozen beer: the term ab sin φ φ̇² as typed in, with a = 3 cm and b = 1 cm",
-            r"3(<0.5|1>)\sin(x)\,(x')^2",
+            wrong=PRINTED_8,
+            about="Frozen beer: the term ab sin φ φ̇² as typed in, with a = 3 cm and b = 1 cm",
+            latex=r"3(<0.5|1>)\sin(x)\,(x')^2",
         ),
         quote="3(0.5) sin(x)(x')² …, which corresponds to a = 3 cm, b = 1 cm",
     ),
@@ -181,14 +191,14 @@ CLAIMS = (
         "angle at which nothing turns the can",
         _BALANCES,
         EXACT,
-        "sin(alpha + rest) - a*sin(alpha)/b",
+        residual="sin(alpha + rest) - a*sin(alpha)/b",
     ),
     Claim(
         "(53)",
         "there the centre of mass is above the contact",
         _BALANCES,
         EXACT,
-        "b*sin(alpha + rest) - a*sin(alpha)",
+        residual="b*sin(alpha + rest) - a*sin(alpha)",
         quote="the center of mass of the half cylinder is directly above the point of contact",
     ),
     Claim(
@@ -196,7 +206,7 @@ CLAIMS = (
         "steepest incline with an equilibrium, sin(alpha) = 4/(3 pi)",
         _STEEPEST,
         EXACT,
-        "sin(observed) - 4/(3*pi)",
+        residual="sin(observed) - 4/(3*pi)",
         quote="This equilibrium exists only for sin α ≤ 4/3π",
     ),
     Claim(
@@ -204,7 +214,7 @@ CLAIMS = (
         "that is 25 degrees",
         _STEEPEST,
         Bound(2e-2, "half a unit of the last digit"),
-        "25 - degrees(observed)",
+        residual="25 - degrees(observed)",
         quote="for α ≤ 25°",
     ),
     Claim(
@@ -212,7 +222,7 @@ CLAIMS = (
         "least friction coefficient at which the can stays: tan(alpha)",
         Witness(CONTACT, _least_friction),
         Bound(1e-3, "bisection, and what counts as slipping"),
-        "mu - tan(alpha)",
+        residual="mu - tan(alpha)",
         quote="only if the coefficient μ of static friction is larger than tan α",
     ),
     Claim(
@@ -220,19 +230,19 @@ CLAIMS = (
         "change of cos(phi) to first order",
         _TAYLOR,
         Bound(3e-3, "the next order: swing cot(phi_0)/2 = 2e-3"),
-        "turn*sin(rest) + (cos(rest + turn) - cos(rest))",
+        residual="turn*sin(rest) + (cos(rest + turn) - cos(rest))",
     ),
     Claim(
         "(54)",
         "change of sin(alpha + phi) to first order: its sign",
         _TAYLOR,
         Bound(3e-4, "the next order: swing tan(alpha + phi_0)/2 = 2e-4"),
-        _SINE_54,
-        Misprint(
+        residual=_SINE_54,
+        misprint=Misprint(
             2.0,
-            f"-{_SINE_54}",
-            "Frozen beer: the sine near the equilibrium",
-            r"\sin(\alpha+\varphi)\approx\sin(\alpha+\varphi_0)\\ "
+            wrong=f"-{_SINE_54}",
+            about="Frozen beer: the sine near the equilibrium",
+            latex=r"\sin(\alpha+\varphi)\approx\sin(\alpha+\varphi_0)\\ "
             r"{}<-|+>\,\epsilon\cos\omega t\,\cos(\alpha+\varphi_0)",
         ),
     ),
@@ -241,12 +251,12 @@ CLAIMS = (
         "omega of small oscillations: 2ab cos(phi_0); printed ab cos(phi_0)",
         _SMALL_SWING,
         _AMPLITUDE,
-        f"sqrt({EQ_55.format(2)}) - omega",
-        Misprint(
+        residual=f"sqrt({EQ_55.format(2)}) - omega",
+        misprint=Misprint(
             0.21,
-            f"sqrt({EQ_55.format(1)}) - omega",
-            "Frozen beer: frequency of small swings",
-            r"\omega^2=\frac{gb\cos(\alpha+\varphi_0)}{\frac{3a^2}{2}-<|2>ab\cos\varphi_0}",
+            wrong=f"sqrt({EQ_55.format(1)}) - omega",
+            about="Frozen beer: frequency of small swings",
+            latex=r"\omega^2=\frac{gb\cos(\alpha+\varphi_0)}{\frac{3a^2}{2}-<|2>ab\cos\varphi_0}",
         ),
     ),
     Claim(
@@ -254,7 +264,7 @@ CLAIMS = (
         "from phi = 0 the can rocks with omega of (55): there, and within, at 1e-3 rad",
         _SMALL_SWING,
         _AMPLITUDE,
-        f"sqrt({EQ_55.format(2)}) - omega",
+        residual=f"sqrt({EQ_55.format(2)}) - omega",
         limit=Limit(0.0154, partial(oscillate, frozen(), 0.0, rolling="equality")),
         quote="it does not roll, but executes oscillations with frequency approximately given by "
         "eq. (55)",
@@ -264,7 +274,7 @@ CLAIMS = (
         "b = 0: phi = g sin(alpha) t^2/(3a)",
         simulated(balanced(0.5), 0.0),
         Bound(1e-7, DRIFT),
-        "phi - g*sin(alpha)*time**2/(3*a)",
+        residual="phi - g*sin(alpha)*time**2/(3*a)",
         quote="φ = g sin αt²/3a",
     ),
     Claim(
@@ -272,7 +282,7 @@ CLAIMS = (
         "mean acceleration of a long roll-down (2/3) g sin(alpha): b = a/3; within, b = a/300",
         Witness(EQUALITY, partial(_mean_acceleration, 0.01)),
         Bound(1e-3, "the start, of whose waves 1e-4 is left between 8 s and 16 s"),
-        "acceleration - 2*g*sin(alpha)/3",
+        residual="acceleration - 2*g*sin(alpha)/3",
         limit=Limit(0.0264, _mean_acceleration),
         quote="A solid cylinder that rolls without slipping would have acceleration (2/3)g sin α "
         "down the incline",
@@ -282,7 +292,7 @@ CLAIMS = (
         "the same by exact theory: that over (mean of sqrt(J))^2 / (3 m a^2/2)",
         Witness(EQUALITY, _mean_acceleration),
         Bound(1e-3, "the start, as above"),
-        "acceleration - 2*g*sin(alpha)/3/mean(sqrt(1 - 4*b/(3*a)*cos(turn)))**2",
+        residual="acceleration - 2*g*sin(alpha)/3/mean(sqrt(1 - 4*b/(3*a)*cos(turn)))**2",
         quote="Angle φ varies almost quadratically in time, with a small oscillation about this",
     ),
     Claim(
@@ -290,7 +300,7 @@ CLAIMS = (
         "phi(t) of the roll-down from phi = pi, a = 3 cm, b = 1 cm",
         Witness(EQUALITY, _beside_theory),
         Bound(1e-7, DRIFT),
-        "phi - theory",
+        residual="phi - theory",
         quote="for a = 3 cm, b = 1 cm, α = 10°, φ(0) = π and φ̇(0) = 0",
     ),
     Claim(
@@ -298,7 +308,7 @@ CLAIMS = (
         "time at which N = 0, after which a real can is not on the incline: 0.848 s",
         Witness(CONTACT, _lift_off_time),
         Bound(4e-3, "the soft contact, and that the can slips a moment before"),
-        "lifts - theory",
+        residual="lifts - theory",
         quote="A rigid can that is somehow constrained to roll without slipping cannot hop",
     ),
 )

@@ -143,7 +143,7 @@ CLAIMS = (
         "Littlewood: lifts off at 90 degrees: beyond, at M/m = 1/20; within, at 1e-9",
         Witness(_THEORY, partial(lift_off, 1e-9)),
         Bound(1e-8, "M/m"),
-        "pi/2 - observed",
+        residual="pi/2 - observed",
         limit=Limit(0.091, partial(lift_off, RATIO)),
         quote="The hoop lifts off the ground when the radius vector to the weight becomes "
         "horizontal.",
@@ -153,7 +153,7 @@ CLAIMS = (
         "angle of lift-off at M/m = 1/20, by theory 99.0 degrees",
         Witness(CONTACT, _lifts_off),
         Bound(5e-3, "penetration of the contact, which unloads late"),
-        "angle - theory",
+        residual="angle - theory",
         quote="the can leaves the surface briefly",
     ),
     Claim(
@@ -161,7 +161,7 @@ CLAIMS = (
         "Pritchett: hops from rest below M/m = 1/13",
         Witness(_THEORY, _threshold),
         Bound(1e-9, "the search for the least N"),
-        "1/13 - observed",
+        residual="1/13 - observed",
         quote="valid only if the mass of the unloaded hoop is nonzero",
     ),
     Claim(
@@ -169,7 +169,7 @@ CLAIMS = (
         "in practice it skids first: at mu = 0.8 from 94.2 degrees on, by theory",
         Witness(CONTACT, _skids),
         Bound(5e-3, "what counts as skidding, and the push that starts it"),
-        "angle - theory",
+        residual="angle - theory",
         quote="In actual practice the hoop skids first.",
     ),
     Claim(
@@ -178,7 +178,7 @@ CLAIMS = (
         "constraint",
         Witness(CONTACT, partial(_height, "equality")),
         Bound(0.0, "it hops or not"),
-        "observed - 1",
+        residual="observed - 1",
         limit=Limit(0.58, partial(_height, "contact")),
         quote="A rigid can that is somehow constrained to roll without slipping cannot hop.",
     ),
@@ -188,7 +188,7 @@ CLAIMS = (
         "1e-9",
         Witness(_THEORY, partial(_friction_at_lift_off, 1e-9)),
         Bound(1e-8, "M/m"),
-        "observed",
+        residual="observed",
         scale="1",  # friction is in weights
         limit=Limit(0.146, partial(_friction_at_lift_off, RATIO)),
         quote="valid only if the mass of the unloaded hoop is nonzero, in contrast to Littlewood's "

@@ -97,12 +97,12 @@ CLAIMS = (
         "u - s = b sin(phi), eq. (12); printed b cos(phi)",
         TENTH,
         Bound(1e-12, "rounding"),
-        "-b*sin(phi) + (u - s)",
-        Misprint(
+        residual="-b*sin(phi) + (u - s)",
+        misprint=Misprint(
             1.10,
-            "-b*cos(phi) + (u - s)",
-            "How far the axis is ahead of the centre of mass",
-            r"u-s=b\,<\cos|\sin>\,\varphi",
+            wrong="-b*cos(phi) + (u - s)",
+            about="How far the axis is ahead of the centre of mass",
+            latex=r"u-s=b\,<\cos|\sin>\,\varphi",
         ),
         quote="u = s + b cos φ",
     ),
@@ -111,14 +111,14 @@ CLAIMS = (
         "amplitude of the ripple of u at omega: b phi_0; printed none",
         _HESITATES,
         Bound(2e-5, "the amplitude: phi_0^2/8 = 1.2e-5, and phi is not quite a cosine"),
-        "ripple[1] - b*phi_0",
-        Misprint(
+        residual="ripple[1] - b*phi_0",
+        misprint=Misprint(
             1.0,
-            "ripple[1]",
-            "Amplitude of the can's hesitation at the frequency ω of the swing",
-            r"<0|b\,\varphi_0>",
-            CONSEQUENCE,
-            "(25)",
+            wrong="ripple[1]",
+            about="Amplitude of the can's hesitation at the frequency ω of the swing",
+            latex=r"<0|b\,\varphi_0>",
+            kind=CONSEQUENCE,
+            of="(25)",
         ),
     ),
     Claim(
@@ -126,14 +126,14 @@ CLAIMS = (
         "amplitude of the ripple of u at 2 omega over that at omega: none; printed phi_0/2",
         _HESITATES,
         Bound(1e-9, "rounding: sin(phi) swings alike to both sides"),
-        "ripple[2]",
-        Misprint(
+        residual="ripple[2]",
+        misprint=Misprint(
             _HESITATION / 2,
-            "abs(ripple[2]) + b*phi_0**2/2",
-            "Amplitude of the can's hesitation at 2ω",
-            r"<b\,\varphi_0\cdot\frac{\varphi_0}{2}|0>",
-            CONSEQUENCE,
-            "(25)",
+            wrong="abs(ripple[2]) + b*phi_0**2/2",
+            about="Amplitude of the can's hesitation at 2ω",
+            latex=r"<b\,\varphi_0\cdot\frac{\varphi_0}{2}|0>",
+            kind=CONSEQUENCE,
+            of="(25)",
         ),
         scale="ripple[1]",
         quote="a small modulation at angular frequency 2ω, which would appear as a small, periodic "
@@ -145,12 +145,13 @@ CLAIMS = (
         "1/2",
         Witness("algebra", lambda: Observation.of(sliding(), x=_PHASE)),
         Bound(1e-15, "rounding"),
-        SQUARES_25.format(4),
-        Misprint(
+        residual=SQUARES_25.format(4),
+        misprint=Misprint(
             0.5,
-            SQUARES_25.format(2),
-            "The last step, from the sine's square to the double angle",
-            r"-\frac{\varphi_0^2\sin^2\!\omega t}{2}=-\frac{\varphi_0^2}{4}+\frac{\varphi_0^2\cos "
+            wrong=SQUARES_25.format(2),
+            about="The last step, from the sine's square to the double angle",
+            latex=r"-\frac{\varphi_0^2\sin^2\!\omega "
+            r"t}{2}=-\frac{\varphi_0^2}{4}+\frac{\varphi_0^2\cos "
             r"2\omega t}{<2|4>}",
         ),
     ),
@@ -160,7 +161,7 @@ CLAIMS = (
         "alpha",
         simulated(sliding(), -INCLINE),
         EXACT,
-        "array([theta[0], max(abs(phi))]) - array([0, alpha])",
+        residual="array([theta[0], max(abs(phi))]) - array([0, alpha])",
         quote="If the half cylinder started from rest with its surface horizontal, then φ₀ = α",
     ),
     Claim(
@@ -169,7 +170,7 @@ CLAIMS = (
         "rate",
         Witness(REDUCED, _furthest_from_rest),
         Bound(1e-9, "DOP853"),
-        f"observed - {_TOP}",
+        residual=f"observed - {_TOP}",
         limit=Limit(0.67, _furthest_with_push),
         quote="This motion is not possible starting from rest",
     ),
@@ -179,7 +180,7 @@ CLAIMS = (
         "at 45",
         _SLOW_LOOP,
         Bound(0.0, "the sign of N"),
-        f"abs({_NORMAL}) - {_NORMAL}",
+        residual=f"abs({_NORMAL}) - {_NORMAL}",
         limit=Limit(1.95, _FAST_LOOP.observe),
         quote="rolls down the incline essentially as a rigid body",
     ),
@@ -188,14 +189,14 @@ CLAIMS = (
         "ripple of phi at 2 Omega: delta/4, whatever Omega; printed none",
         _TURN,
         Bound(8e-3, _NEXT_ORDER),
-        "ripple[2] - delta/4",
-        Misprint(
+        residual="ripple[2] - delta/4",
+        misprint=Misprint(
             1.0,
-            "ripple[2]",
-            "Fast loops: the ripples of φ",
-            r"\varphi=\Omega t+\varepsilon\sin\Omega t<|{}+\frac{\delta}{4}\sin2\Omega t,\\ "
+            wrong="ripple[2]",
+            about="Fast loops: the ripples of φ",
+            latex=r"\varphi=\Omega t+\varepsilon\sin\Omega t<|{}+\frac{\delta}{4}\sin2\Omega t,\\ "
             r"\delta=\frac{mb^2/2}{mb^2/2+I_{\text{cm}}}>",
-            APPROXIMATION,
+            kind=APPROXIMATION,
         ),
         quote="we consider that case that angle φ varies with time as φ = Ωt + ε sin ωt",
     ),
@@ -204,14 +205,14 @@ CLAIMS = (
         "epsilon, the ripple at Omega: 1 - 3 delta/8 of the printed one",
         _TURN,
         Bound(8e-3, _NEXT_ORDER),
-        f"ripple[1] - {CORRECTED_28}",
-        Misprint(
+        residual=f"ripple[1] - {CORRECTED_28}",
+        misprint=Misprint(
             0.076,
-            f"ripple[1] - {PRINTED_28}",
-            "Fast loops: amplitude of the ripple at Ω",
-            r"\varepsilon=<|\Bigl(1-\frac{3}{8}\delta\Bigr)>"
+            wrong=f"ripple[1] - {PRINTED_28}",
+            about="Fast loops: amplitude of the ripple at Ω",
+            latex=r"\varepsilon=<|\Bigl(1-\frac{3}{8}\delta\Bigr)>"
             r"\frac{mbg\cos\alpha}{\Omega^2(mb^2/2+I_{\text{cm}})}",
-            APPROXIMATION,
+            kind=APPROXIMATION,
         ),
         quote="the equation of motion (16) averages to the form",
     ),
@@ -220,27 +221,27 @@ CLAIMS = (
         "epsilon falls as Omega^-2 over a decade of Omega",
         Witness(REDUCED, _slope),
         Bound(6e-3, "the slowest, at 35 rad/s, is near the separatrix"),
-        "observed + 2",
+        residual="observed + 2",
     ),
     Claim(
         "(28)",
         "epsilon has the frequency Omega: with those at Omega to 16 Omega, phi is as simulated",
         Witness(REDUCED, _synthesis),
         Bound(1e-5, "ripples beyond"),
-        "ahead - waves",
+        residual="ahead - waves",
     ),
     Claim(
         "(29)",
         "amplitude of the ripple of u at Omega: b (1 + delta/8); printed b",
         _TURN,
         Bound(1e-3, _NEXT_ORDER),
-        "sway[1] - b*(1 + delta/8)",
-        Misprint(
+        residual="sway[1] - b*(1 + delta/8)",
+        misprint=Misprint(
             0.026,
-            "sway[1] - b",
-            "Fast loops: the ripple of u at Ω",
-            r"b<|\Bigl(1+\frac{\delta}{8}\Bigr)>\sin\Omega t",
-            APPROXIMATION,
+            wrong="sway[1] - b",
+            about="Fast loops: the ripple of u at Ω",
+            latex=r"b<|\Bigl(1+\frac{\delta}{8}\Bigr)>\sin\Omega t",
+            kind=APPROXIMATION,
         ),
     ),
 )

@@ -123,27 +123,33 @@ _ROUNDING = Bound(1e-13, "rounding")
 _DIGIT = "half a unit of the last digit"
 
 CLAIMS = (
-    Claim("(7)", "b/a of a half cylinder", _HALF, _CLOSED, "4/(3*pi) - b"),
-    Claim("(8)", "I_axis/(m a^2) of a half cylinder", _HALF, _CLOSED, "0.5 - inertia - b**2"),
+    Claim("(7)", "b/a of a half cylinder", _HALF, _CLOSED, residual="4/(3*pi) - b"),
     Claim(
-        "(9)", "I_cm/(m a^2) of a half cylinder", _HALF, _CLOSED, "-inertia + (0.5 - (4/(3*pi))**2)"
+        "(8)", "I_axis/(m a^2) of a half cylinder", _HALF, _CLOSED, residual="0.5 - inertia - b**2"
     ),
-    Claim("(9)", "I_cm = 0.32 m a^2", _HALF, Bound(1.6e-2, _DIGIT), "0.32 - inertia"),
-    Claim("(30)", "m_can", _SHELL, _ROUNDING, "2*pi*a*t*(l + a)*rho - mass"),
-    Claim("(31)", "I_can", _SHELL, _ROUNDING, "pi*a**3*t*(2*l + a)*rho - inertia"),
+    Claim(
+        "(9)",
+        "I_cm/(m a^2) of a half cylinder",
+        _HALF,
+        _CLOSED,
+        residual="-inertia + (0.5 - (4/(3*pi))**2)",
+    ),
+    Claim("(9)", "I_cm = 0.32 m a^2", _HALF, Bound(1.6e-2, _DIGIT), residual="0.32 - inertia"),
+    Claim("(30)", "m_can", _SHELL, _ROUNDING, residual="2*pi*a*t*(l + a)*rho - mass"),
+    Claim("(31)", "I_can", _SHELL, _ROUNDING, residual="pi*a**3*t*(2*l + a)*rho - inertia"),
     Claim(
         "(31)",
         "I_can/(m_can a^2)",
         _SHELL,
         _ROUNDING,
-        "(2*l + a)/(2*(l + a)) - inertia/(mass*a**2)",
+        residual="(2*l + a)/(2*(l + a)) - inertia/(mass*a**2)",
     ),
     Claim(
         "(31)",
         "I_can = 0.89 m_can a^2",
         _SHELL,
         Bound(5.6e-3, _DIGIT),
-        "0.89 - inertia/(mass*a**2)",
+        residual="0.89 - inertia/(mass*a**2)",
     ),
     Claim(
         "(32)",
@@ -152,39 +158,49 @@ CLAIMS = (
         _CLOSED,
         # From the axis to the chord, by half its length, and that by the angle 2 beta that it
         # subtends.
-        "-1 + where(beta < pi/2, 1, -1)*sqrt(1 - sin(beta)**2) + (1 - cos(beta))",
+        residual="-1 + where(beta < pi/2, 1, -1)*sqrt(1 - sin(beta)**2) + (1 - cos(beta))",
     ),
-    Claim("(34)", "mass of the beer", _FILLED, _CLOSED, f"a**2*l*rho_beer*{_TWICE_AREA}/2 - mass"),
+    Claim(
+        "(34)",
+        "mass of the beer",
+        _FILLED,
+        _CLOSED,
+        residual=f"a**2*l*rho_beer*{_TWICE_AREA}/2 - mass",
+    ),
     Claim(
         "(33)",
         "area, middle form",
         _FILLED,
         _CLOSED,
-        "-area + (pi/2 - cos(beta)*sin(beta) - arcsin(cos(beta)))",
+        residual="-area + (pi/2 - cos(beta)*sin(beta) - arcsin(cos(beta)))",
     ),
-    Claim("(33)", "area, last form", _FILLED, _CLOSED, f"{_TWICE_AREA}/2 - area"),
-    Claim("(35)", "b, with A", _FILLED, _CLOSED, f"2*sin(beta)**3/(3*({_TWICE_AREA}/2)) - b"),
-    Claim("(35)", "b, last form", _FILLED, _CLOSED, f"4*sin(beta)**3/(3*{_TWICE_AREA}) - b"),
-    Claim("(36)", "I_axis, second line", _FILLED, _CLOSED, _SECOND_36 + _AXIAL),
-    Claim("(36)", "I_axis, last form", _FILLED, _CLOSED, _LAST_36 + _AXIAL),
+    Claim("(33)", "area, last form", _FILLED, _CLOSED, residual=f"{_TWICE_AREA}/2 - area"),
+    Claim(
+        "(35)", "b, with A", _FILLED, _CLOSED, residual=f"2*sin(beta)**3/(3*({_TWICE_AREA}/2)) - b"
+    ),
+    Claim(
+        "(35)", "b, last form", _FILLED, _CLOSED, residual=f"4*sin(beta)**3/(3*{_TWICE_AREA}) - b"
+    ),
+    Claim("(36)", "I_axis, second line", _FILLED, _CLOSED, residual=_SECOND_36 + _AXIAL),
+    Claim("(36)", "I_axis, last form", _FILLED, _CLOSED, residual=_LAST_36 + _AXIAL),
     Claim(
         "(37)",
         "I_cm",
         _FILLED,
         _CLOSED,
-        f"-inertia + ({_LAST_36} - 16*sin(beta)**6/(9*{_TWICE_AREA}**2))",
+        residual=f"-inertia + ({_LAST_36} - 16*sin(beta)**6/(9*{_TWICE_AREA}**2))",
     ),
     Claim(
         "(36)",
         "I_axis, third line: sin(2 beta) sin^2(beta)/4; printed /8",
         _FILLED,
         _CLOSED,
-        _THIRD_36.format(4) + _AXIAL,
-        Misprint(
+        residual=_THIRD_36.format(4) + _AXIAL,
+        misprint=Misprint(
             0.23,
-            _THIRD_36.format(8) + _AXIAL,
-            "The beer's inertia about the can's axis, third line",
-            r"\frac{2\rho_{\text{beer}}a^4l}{3}\Bigl(\frac{3\beta}{4}-\frac{3\sin2\beta}{8}"
+            wrong=_THIRD_36.format(8) + _AXIAL,
+            about="The beer's inertia about the can's axis, third line",
+            latex=r"\frac{2\rho_{\text{beer}}a^4l}{3}\Bigl(\frac{3\beta}{4}-\frac{3\sin2\beta}{8}"
             r"+\frac{\sin2\beta\,\sin^2\!\beta}{<8|4>}\Bigr)",
         ),
     ),
@@ -193,14 +209,14 @@ CLAIMS = (
         "centre of mass of can and beer",
         Witness("MuJoCo, subtree_com", _centre_of_mass),
         _ROUNDING,
-        "m*b/(m + can_mass) - distance",
+        residual="m*b/(m + can_mass) - distance",
     ),
     Claim(
         "figure of (36)",
         "k is 1/2 at beta = pi/2 and at pi",
         _by_quadrature(0.5, 1.0),
         _CLOSED,
-        "0.5" + _AXIAL,
+        residual="0.5" + _AXIAL,
         quote="k decreases from 1 … to 1/2 at β = π/2 …, then dips slightly and returns to k = 1/2 "
         "at β = π",
     ),
@@ -209,7 +225,7 @@ CLAIMS = (
         "k is 1 for a film (fill 1e-5)",
         _by_quadrature(1e-5),
         Bound(1e-4, "the film's height"),
-        "1" + _AXIAL,
+        residual="1" + _AXIAL,
         quote="decreases from 1 (for a point mass at distance a from the axis)",
     ),
     Claim(
@@ -217,7 +233,7 @@ CLAIMS = (
         "in between k dips, to 0.456 at 115 degrees",
         _THOUSAND,
         Bound(2e-3, f"{_DIGIT}; the paper gives no number"),
-        "0.456 - min(inertia + b**2)",
+        residual="0.456 - min(inertia + b**2)",
         quote="then dips slightly",
     ),
     Claim(
@@ -225,7 +241,7 @@ CLAIMS = (
         "k rises all the way: it is never below what it was",
         _THOUSAND,
         _ROUNDING,
-        "inertia - maximum.accumulate(inertia)",
+        residual="inertia - maximum.accumulate(inertia)",
         quote="as angle β increases from 0 to π, k increases",
     ),
     Claim(
@@ -233,7 +249,7 @@ CLAIMS = (
         "k goes from 0 by 0.32 at beta = pi/2 to 0.5",
         _by_quadrature(1e-5, 0.5, 1.0),
         Bound(1e-3, _DIGIT),
-        "array([0, 0.32, 0.5]) - inertia",
+        residual="array([0, 0.32, 0.5]) - inertia",
         quote="k increases from 0 … to 0.32 at β = π/2 …, and then continues to increase to 0.5 at "
         "β = π",
     ),

@@ -50,7 +50,7 @@ def _cylinder(k: float) -> Claim:
         f"a cylinder of inertia {k:g} m a^2 has g sin(alpha)/(1 + k)",
         simulated(balanced(k), 0.0),
         Bound(1e-7, DRIFT),
-        f"u_ddot - g*sin(alpha)/(1 + {k})",
+        residual=f"u_ddot - g*sin(alpha)/(1 + {k})",
         quote="a uniform cylinder with moment of inertia I = kma² about its axis has acceleration "
         "g sin α/(1 + k)",
     )
@@ -62,7 +62,7 @@ CLAIMS = (
         "s(t) from rest",
         SWING,
         Bound(1e-12, "rounding of DOP853"),
-        "s - g*sin(alpha)*time**2/2",
+        residual="s - g*sin(alpha)*time**2/2",
     ),
     Claim(
         "footnote 1",
@@ -70,7 +70,7 @@ CLAIMS = (
         "mass",
         _LIGHT_CAN,
         Bound(7e-3, "the can's share of the mass, 1e-3, in a swing of 7 times g sin(alpha)"),
-        "friction",
+        residual="friction",
         scale="m*g*sin(alpha)",
         limit=Limit(0.25, METAL.observe),
         quote="in the limit of a massless can, the force of friction is zero, so we neglect "
@@ -83,7 +83,7 @@ CLAIMS = (
         "at phi = 0 the surface stays parallel to the incline, and u = g sin(alpha) t^2/2",
         simulated(sliding(), sliding().equilibrium()),
         EXACT,
-        "u - g*sin(alpha)*time**2/2 + phi",
+        residual="u - g*sin(alpha)*time**2/2 + phi",
         quote="slide down a frictionless incline of angle α without oscillation if its flat side "
         "is parallel to the "
         "incline",
@@ -93,7 +93,7 @@ CLAIMS = (
         "sliding beer can be at rest: beyond, at 10 degrees; within, on level ground",
         _LEVEL,
         EXACT,
-        "s_ddot",
+        residual="s_ddot",
         scale="g",
         limit=Limit(0.174, SWING.observe),
         quote="a stable equilibrium exists only for α = 0",
@@ -103,7 +103,7 @@ CLAIMS = (
         "torque about the instantaneous centre",
         SWING,
         EXACT,
-        f"(inertia + m*b**2*sin(phi)**2)*phi_ddot + m*b**2*sin(phi)*cos(phi)*phi_dot**2 + "
+        residual=f"(inertia + m*b**2*sin(phi)**2)*phi_ddot + m*b**2*sin(phi)*cos(phi)*phi_dot**2 + "
         f"{_TORQUE}",
     ),
     Claim(
@@ -112,13 +112,13 @@ CLAIMS = (
         "the surface",
         WIDE,
         EXACT,
-        _TURNS_ABOUT_C,
+        residual=_TURNS_ABOUT_C,
         # Turning about a C that is lower by b tan(phi) sin(phi) adds a velocity along the incline.
-        Misprint(
+        misprint=Misprint(
             0.93,
-            _TURNS_ABOUT_C + " - phi_dot*b*sin(phi)**2/cos(phi)",
-            "The line through the centre of mass on which the instantaneous centre C lies",
-            r"<\text{along the flat surface of the beer}|\text{along the incline}>",
+            wrong=_TURNS_ABOUT_C + " - phi_dot*b*sin(phi)**2/cos(phi)",
+            about="The line through the centre of mass on which the instantaneous centre C lies",
+            latex=r"<\text{along the flat surface of the beer}|\text{along the incline}>",
         ),
         quote="the line parallel to the flat surface that passes through the center of mass",
     ),
@@ -127,30 +127,35 @@ CLAIMS = (
         "I_C, exact form",
         SWING,
         EXACT,
-        "inertia*phi_dot**2/2 + m*b**2*sin(phi)**2*phi_dot**2/2 + (m*s_dot**2/2 - kinetic)",
+        residual="inertia*phi_dot**2/2 + m*b**2*sin(phi)**2*phi_dot**2/2 + (m*s_dot**2/2 - "
+        "kinetic)",
     ),
     Claim(
         "(3)",
         "I_C = I_cm: beyond, a swing of 1 rad; within, of 1e-3 rad",
         NARROW,
         Bound(1e-6, "the amplitude: (m b^2/I_cm) phi^2 = 6e-7"),
-        "inertia*phi_dot**2/2 + (m*s_dot**2/2 - kinetic)",
+        residual="inertia*phi_dot**2/2 + (m*s_dot**2/2 - kinetic)",
         limit=Limit(0.095, WIDE.observe),
     ),
     Claim(
-        "(4)", "torque about C, exact form", SWING, EXACT, f"-m*g*cos(alpha)*b*sin(phi) + {_TORQUE}"
+        "(4)",
+        "torque about C, exact form",
+        SWING,
+        EXACT,
+        residual=f"-m*g*cos(alpha)*b*sin(phi) + {_TORQUE}",
     ),
     Claim(
         "(4)",
         "torque about C, linear form: its sign",
         NARROW,
         Bound(3e-7, "the amplitude: phi^2/6 = 1.7e-7"),
-        f"-m*b*g*cos(alpha)*phi + {_TORQUE}",
-        Misprint(
+        residual=f"-m*b*g*cos(alpha)*phi + {_TORQUE}",
+        misprint=Misprint(
             2.0,
-            f"m*b*g*cos(alpha)*phi + {_TORQUE}",
-            "Torque about the instantaneous centre, for small angles",
-            r"\tau_C\approx<+|->\,mbg\cos\alpha\,\varphi",
+            wrong=f"m*b*g*cos(alpha)*phi + {_TORQUE}",
+            about="Torque about the instantaneous centre, for small angles",
+            latex=r"\tau_C\approx<+|->\,mbg\cos\alpha\,\varphi",
         ),
     ),
     Claim(
@@ -158,7 +163,7 @@ CLAIMS = (
         "linear equation of motion: beyond, a swing of 1 rad; within, of 1e-3 rad",
         NARROW,
         Bound(1e-6, "the amplitude: (1/6 + m b^2/I_cm) phi^2 = 7e-7"),
-        "inertia*phi_ddot + m*b*g*cos(alpha)*phi",
+        residual="inertia*phi_ddot + m*b*g*cos(alpha)*phi",
         limit=Limit(0.40, WIDE.observe),
     ),
     Claim(
@@ -166,7 +171,7 @@ CLAIMS = (
         "omega of small oscillations: beyond, a swing of 1 rad; within, of 1e-3 rad",
         _SMALL_SWING,
         Bound(3e-7, "the amplitude: 2e-7"),
-        f"sqrt(array([{EQ_6}, {EQ_24}])) - omega",
+        residual=f"sqrt(array([{EQ_6}, {EQ_24}])) - omega",
         limit=Limit(0.15, partial(oscillate, sliding(), 1.0)),
     ),
     Claim(
@@ -174,12 +179,12 @@ CLAIMS = (
         "omega^2, middle form: it lacks 1/a (in SI units)",
         _SMALL_SWING,
         Bound(6e-7, "the amplitude: 4e-7"),
-        f"{EQ_10} - omega**2",
-        Misprint(
+        residual=f"{EQ_10} - omega**2",
+        misprint=Misprint(
             0.967,
-            f"{PRINTED_10} - omega**2",
-            "Frequency of small swings of a half-full can",
-            r"\omega^2=\frac{24\pi g\cos\alpha}{9\pi^2-32}<|\cdot\frac1a>",
+            wrong=f"{PRINTED_10} - omega**2",
+            about="Frequency of small swings of a half-full can",
+            latex=r"\omega^2=\frac{24\pi g\cos\alpha}{9\pi^2-32}<|\cdot\frac1a>",
         ),
     ),
     Claim(
@@ -187,33 +192,42 @@ CLAIMS = (
         "omega^2 = 1.33 g cos(alpha)/a",
         _SMALL_SWING,
         Bound(3.8e-3, "half a unit of the last digit"),
-        "1.33*g*cos(alpha)/a - omega**2",
+        residual="1.33*g*cos(alpha)/a - omega**2",
     ),
-    Claim("(11)", "T", SWING, EXACT, f"{KINETIC_11} - kinetic"),
-    Claim("(12)", "u = s + b sin(phi)", SWING, EXACT, "u - s - b*sin(phi)"),
-    Claim("(12), Fig. 3", "theta = alpha + phi", SWING, EXACT, "theta - phi - alpha"),
-    Claim("(13)", "z in u and theta", SWING, EXACT, "-u*sin(alpha) - b*cos(theta) - height"),
-    Claim("(13)", "z in s and phi", SWING, EXACT, "-s*sin(alpha) - b*cos(alpha)*cos(phi) - height"),
+    Claim("(11)", "T", SWING, EXACT, residual=f"{KINETIC_11} - kinetic"),
+    Claim("(12)", "u = s + b sin(phi)", SWING, EXACT, residual="u - s - b*sin(phi)"),
+    Claim("(12), Fig. 3", "theta = alpha + phi", SWING, EXACT, residual="theta - phi - alpha"),
+    Claim(
+        "(13)", "z in u and theta", SWING, EXACT, residual="-u*sin(alpha) - b*cos(theta) - height"
+    ),
+    Claim(
+        "(13)",
+        "z in s and phi",
+        SWING,
+        EXACT,
+        residual="-s*sin(alpha) - b*cos(alpha)*cos(phi) - height",
+    ),
     Claim(
         "(14)",
         "V, its first form: -mgz for +mgz",
         SWING,
         EXACT,
-        f"{POTENTIAL_14} - potential",
-        Misprint(
+        residual=f"{POTENTIAL_14} - potential",
+        misprint=Misprint(
             1.92,
-            "m*g*s*sin(alpha) + m*g*b*cos(alpha)*cos(phi) - potential",
-            "Potential energy of the beer",
-            "V=<-|+>mgz",
+            wrong="m*g*s*sin(alpha) + m*g*b*cos(alpha)*cos(phi) - potential",
+            about="Potential energy of the beer",
+            latex="V=<-|+>mgz",
         ),
     ),
-    Claim("(15)", "s_ddot", SWING, EXACT, "s_ddot - g*sin(alpha)"),
+    Claim("(15)", "s_ddot", SWING, EXACT, residual="s_ddot - g*sin(alpha)"),
     Claim(
         "(16)",
         "equation of motion of phi",
         SWING,
         EXACT,
-        "m*b**2*sin(phi)**2*phi_ddot + inertia*phi_ddot + m*b**2*sin(phi)*cos(phi)*phi_dot**2 "
+        residual="m*b**2*sin(phi)**2*phi_ddot + inertia*phi_ddot + "
+        "m*b**2*sin(phi)*cos(phi)*phi_dot**2 "
         "+ m*b*g*cos(alpha)*sin(phi)",
     ),
     Claim(
@@ -221,27 +235,27 @@ CLAIMS = (
         "T",
         SWING,
         EXACT,
-        "m/2*u_dot**2 - m*b*cos(phi)*u_dot*phi_dot + m*a**2/4*phi_dot**2 - kinetic",
+        residual="m/2*u_dot**2 - m*b*cos(phi)*u_dot*phi_dot + m*a**2/4*phi_dot**2 - kinetic",
     ),
-    Claim("(17), (20)", "V", SWING, EXACT, f"{POTENTIAL_17} - potential"),
+    Claim("(17), (20)", "V", SWING, EXACT, residual=f"{POTENTIAL_17} - potential"),
     Claim(
         "(18), (21)",
         "equation of motion of u",
         SWING,
         EXACT,
-        "u_ddot - b*cos(phi)*phi_ddot + b*sin(phi)*phi_dot**2 - g*sin(alpha)",
+        residual="u_ddot - b*cos(phi)*phi_ddot + b*sin(phi)*phi_dot**2 - g*sin(alpha)",
     ),
     Claim(
         "(19), (22)",
         "equation of motion of phi or theta: its right side lacks g (in SI units)",
         SWING,
         EXACT,
-        _EQ_19.format("g"),
-        Misprint(
+        residual=_EQ_19.format("g"),
+        misprint=Misprint(
             0.61,
-            _EQ_19.format("1"),
-            "Equation of motion of φ, and that of θ alike",
-            r"\frac{a^2}{2}\ddot\varphi-b\cos\varphi\,\ddot u=-<|g>b\sin(\alpha+\varphi)",
+            wrong=_EQ_19.format("1"),
+            about="Equation of motion of φ, and that of θ alike",
+            latex=r"\frac{a^2}{2}\ddot\varphi-b\cos\varphi\,\ddot u=-<|g>b\sin(\alpha+\varphi)",
         ),
     ),
 )

@@ -219,7 +219,8 @@ COMMANDS = {
     "--speed 0.25",
     "frozen": "mjbeer render frozen --phi0 180 --duration 0.82 --tolerance 1e-9 --speed 0.2",
     "pendulum": "mjbeer render pendulum --phi0 60 --duration 1.5 --tolerance 1e-9 --speed 0.25",
-    "hoop": "mjbeer render hoop --hoop-mass 0.06 --phi0 -90 --phi-dot0 1700 --duration 0.26 --rolling contact "
+    "hoop": "mjbeer render hoop --hoop-mass 0.06 --phi0 -90 --phi-dot0 1700 --duration 0.26 "
+    "--rolling contact "
     "--friction 0.01 --timestep 1e-4 --speed 0.06",
 }
 """Commands that draw a film by itself; `mjbeer report` draws the others."""
