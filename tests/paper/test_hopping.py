@@ -30,11 +30,14 @@ def accelerations(phi: float, rate: float, push: float) -> np.ndarray:
     """
     sin = math.sin(phi)
     cos = math.cos(phi)
-    matrix = np.array([
-        [HOOP + WEIGHT, -WEIGHT * cos, push],
-        [-WEIGHT * cos, HOOP + WEIGHT, -push],
-        [0.0, -WEIGHT * sin, 1.0],
-    ])  # fmt: skip
+    # Fmt: skip.
+    matrix = np.array(
+        [
+            [HOOP + WEIGHT, -WEIGHT * cos, push],
+            [-WEIGHT * cos, HOOP + WEIGHT, -push],
+            [0.0, -WEIGHT * sin, 1.0],
+        ]
+    )
     right = [-WEIGHT * sin * rate**2, -WEIGHT * sin, HOOP + WEIGHT + WEIGHT * cos * rate**2]
     return np.linalg.solve(matrix, right)
 

@@ -66,9 +66,8 @@ class Result(NamedTuple):
 class Race(Film):
     """A film of several cans of one size that are let go together on one incline.
 
-    Each has its time by its name at the finish.
-
-    With `centres` it is no race: the cans' centres of mass are marked and joined, from one line on.
+    Each has its time by its name at the finish. With `centres` it is no race: the cans' centres of
+    mass are marked and joined, from one line on.
     """
 
     title: str
@@ -89,9 +88,8 @@ class Race(Film):
     def results(self, runners: Sequence[Runner]) -> list[Result]:
         """Return what each can's plate says from its finish on.
 
-        A can that comes too late has it from 0.4 s before the end on.
-
-        Cans whose times are the same as shown share a place.
+        That of a can that comes too late says so from 0.4 s before the end on. Cans whose times are
+        the same as shown share a place.
         """
         finishes = [runner.finish(self.length) for runner in runners]
         shown = [round(finish, 2) for finish in finishes]

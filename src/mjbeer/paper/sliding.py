@@ -37,9 +37,8 @@ _TORQUE = "m*g*cos(alpha)*(u - s)"
 _TURNS_ABOUT_C = "across_dot - phi_dot*(u - s)"
 """The centre of mass moves across the incline at phi_dot (u - s) [m/s]."""
 
-_LIGHT_CAN = simulated(
-    sliding(can=Can.sheet_metal(thickness=2.5e-6)), 2.0
-)  # 1e-3 of its load's mass
+# 1e-3 of its load's mass.
+_LIGHT_CAN = simulated(sliding(can=Can.sheet_metal(thickness=2.5e-6)), 2.0)
 _LEVEL = simulated(sliding(0.0), 2.0)
 _SMALL_SWING = Witness(REDUCED, partial(oscillate, sliding(), SMALL))
 
@@ -85,8 +84,7 @@ CLAIMS = (
         EXACT,
         residual="u - g*sin(alpha)*time**2/2 + phi",
         quote="slide down a frictionless incline of angle α without oscillation if its flat side "
-        "is parallel to the "
-        "incline",
+        "is parallel to the incline",
     ),
     Claim(
         "footnote 6",
@@ -227,8 +225,7 @@ CLAIMS = (
         SWING,
         EXACT,
         residual="m*b**2*sin(phi)**2*phi_ddot + inertia*phi_ddot + "
-        "m*b**2*sin(phi)*cos(phi)*phi_dot**2 "
-        "+ m*b*g*cos(alpha)*sin(phi)",
+        "m*b**2*sin(phi)*cos(phi)*phi_dot**2 + m*b*g*cos(alpha)*sin(phi)",
     ),
     Claim(
         "(17), (20)",

@@ -29,10 +29,10 @@ from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.scene import Scene, frozen, sliding
 from mjbeer.theory.trajectory import Trajectory, exact
 
-SWING = math.radians(
-    60
-)  # amplitude [rad] of the swing that shows the hesitation: so wide that the can slows down
-FRICTION = 1.0  # friction coefficient of the incline from which the can lifts off
+SWING = math.radians(60)
+"""Amplitude [rad] of the swing that shows the hesitation: so wide that the can slows down."""
+FRICTION = 1.0
+"""Friction coefficient of the incline from which the can lifts off."""
 HESITATION = partial(
     simulate, sliding(), 0.8, SWING, integrator="DOP853", times=np.linspace(0, 0.8, 401)
 )

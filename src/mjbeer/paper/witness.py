@@ -40,13 +40,12 @@ def watch(
 ) -> Observation:
     """Return what MuJoCo computes at evenly spaced samples of a motion it simulates.
 
-    Coordinates are those of Fig. 3.
-
-    `s` is read from the position of the load's centre of mass, `across` is how far it is from the
-    axis, away from the incline, and `height` how far above where the axis starts. `theta` [rad] is
-    the angle between gravity and the line from the axis to it. Accelerations are those of
-    mj_forward; `kinetic` and `potential` are energies of the whole [J], and `friction` is the force
-    [N] of the incline on the can, uphill, where a constraint makes it roll, otherwise 0.
+    Coordinates are those of Fig. 3: `s` is read from the position of the load's centre of mass,
+    `across` is how far it is from the axis, away from the incline, and `height` how far above where
+    the axis starts. `theta` [rad] is the angle between gravity and the line from the axis to it.
+    Accelerations are those of mj_forward; `kinetic` and `potential` are energies of the whole [J],
+    and `friction` is the force [N] of the incline on the can, uphill, where a constraint makes it
+    roll, otherwise 0.
     """
     times = np.linspace(0, duration, samples)
     run = simulate(scene, duration, phi0, phi_dot0, rolling, integrator, timestep, times=times)

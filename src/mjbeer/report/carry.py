@@ -117,14 +117,11 @@ class Carry(Film):
     still: float = 0.25
     caption: str = (
         "Two cans, half full of beer, are carried 0.4 m, in 1 s and in 1.6 s. The chart has the "
-        "force of each gripper, "
-        "and in grey what it would be if the beer were solid, as in other simulators. In the "
-        "gentle move the surface "
-        "rises by less than 0.1 R at the wall, where linear theory gives numbers, and the beer "
-        "hardly rings after the "
-        "stop. In the quick move it rises by 0.28 R, which is beyond that: the extra force and the "
-        "ringing, a tenth of "
-        "the largest force each, are then more of a picture than numbers."
+        "force of each gripper, and in grey what it would be if the beer were solid, as in other "
+        "simulators. In the gentle move the surface rises by less than 0.1 R at the wall, where "
+        "linear theory gives numbers, and the beer hardly rings after the stop. In the quick move "
+        "it rises by 0.28 R, which is beyond that: the extra force and the ringing, a tenth of the "
+        "largest force each, are then more of a picture than numbers."
     )
 
     def plan(self) -> RenderPlan:

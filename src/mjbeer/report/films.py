@@ -125,16 +125,12 @@ FILMS: dict[str, Film] = {
         speed=0.25,
         still=1.4,
         caption="Four equal cans race over one metre on an incline of 5 degrees. The can whose "
-        "beer slides wins: its "
-        "beer swings to and fro by 30 degrees but does not turn with the can, so that almost "
-        "nothing is spent on "
-        "turning. Frozen beer must turn with its can: the full can is as slow as a solid cylinder, "
-        "with two thirds of "
-        "the winner's acceleration. The frozen can that is three quarters full starts with its "
-        "beer on top, for else "
-        "it would stay where it is; its lead of two centimetres is gone before half-way. The empty "
-        "can comes last, "
-        "since most of its mass is in its wall.",
+        "beer slides wins: its beer swings to and fro by 30 degrees but does not turn with the "
+        "can, so that almost nothing is spent on turning. Frozen beer must turn with its can: the "
+        "full can is as slow as a solid cylinder, with two thirds of the winner's acceleration. "
+        "The frozen can that is three quarters full starts with its beer on top, for else it would "
+        "stay where it is; its lead of two centimetres is gone before half-way. The empty can "
+        "comes last, since most of its mass is in its wall.",
     ),
     "liquids": Race(
         "Water, oil, honey or ice: which can wins, and which is last?",
@@ -145,27 +141,22 @@ FILMS: dict[str, Film] = {
         speed=1 / 3,
         still=2.2,
         caption="Predict first, then look. Four equal cans, three quarters full, are let go "
-        "together on an incline of "
-        "7.1°, each with its surface level. Water hardly rubs against its can, and ice turns with "
-        "it. Water wins after "
-        "1.33 s, and oil follows after 1.63 s. The ice hesitates with its load nearly on top, "
-        "rolls over, and finishes "
-        "after 2.32 s. The honey is last: when the ice arrives it has come 15 cm, and it needs "
-        "21.47 s. It neither "
+        "together on an incline of 7.1°, each with its surface level. Water hardly rubs against "
+        "its can, and ice turns with it. Water wins after 1.33 s, and oil follows after 1.63 s. "
+        "The ice hesitates with its load nearly on top, rolls over, and finishes after 2.32 s. The "
+        "honey is last: when the ice arrives it has come 15 cm, and it needs 21.47 s. It neither "
         "slides freely nor turns with its can, and as it rubs it takes all that the incline gives: "
-        "it creeps with 4.5 "
-        "cm/s. Each liquid is one lump here, and the times are this model's: real water and oil "
-        "are soon so fast that "
-        "they need not stay at the bottom, and of real honey the wall carries up to 30 % round "
-        "with it. With half or "
-        "twice the viscosity honey is last as well.",
+        "it creeps with 4.5 cm/s. Each liquid is one lump here, and the times are this model's: "
+        "real water and oil are soon so fast that they need not stay at the bottom, and of real "
+        "honey the wall carries up to 30 % round with it. With half or twice the viscosity honey "
+        "is last as well.",
     ),
     "sliding": MotionFilm(
         partial(simulate, sliding(can=METAL), 1.2, math.radians(60), tolerance=1e-9),
         speed=0.25,
         caption="Half a can of beer, let go at φ = 60°, slides in its can without friction and "
-        "swings. The can goes to "
-        "and fro about the dashed one, which accelerates evenly: it hesitates with every swing.",
+        "swings. The can goes to and fro about the dashed one, which accelerates evenly: it "
+        "hesitates with every swing.",
         still=0.4,
         style=FilmStyle("Beer slides in its can, and the can hesitates", **_HESITATES),
     ),
@@ -173,8 +164,7 @@ FILMS: dict[str, Film] = {
         partial(simulate, frozen(), 0.82, math.pi, tolerance=1e-9),
         speed=0.2,
         caption="Frozen beer is let go on top, and rolls down ever faster, in jerks. The film ends "
-        "just before the can "
-        "would leave the incline.",
+        "just before the can would leave the incline.",
         still=0.55,
         style=FilmStyle(
             "Frozen beer rolls down in jerks",
@@ -187,9 +177,8 @@ FILMS: dict[str, Film] = {
         partial(simulate, pendulum(), 1.5, math.radians(60), tolerance=1e-9),
         speed=0.25,
         caption="The wheel goes to and fro about the dashed one, which accelerates evenly: it "
-        "hesitates whenever its "
-        "bob is uphill, and runs ahead whenever it is downhill, for nothing but their weight "
-        "drives them together.",
+        "hesitates whenever its bob is uphill, and runs ahead whenever it is downhill, for nothing "
+        "but their weight drives them together.",
         still=0.4,
         style=FilmStyle("A pendulum in a wheel: does the wheel roll evenly?", **_HESITATES),
     ),
@@ -197,12 +186,10 @@ FILMS: dict[str, Film] = {
         HOP,
         speed=0.06,
         caption="A hoop of 60 g with a bar of 200 g on its rim is pushed on ice (μ = 0.01), with "
-        "the bar in front, and "
-        "turns at 1700° per second. As the bar goes through below, the hoop presses on the ice "
-        "with 9.4 times the "
-        "weight of both. After 0.10 s the bar comes up behind and lifts the hoop, which flies 34 "
-        "mm high: about its "
-        "radius. The film ends just before the landing.",
+        "the bar in front, and turns at 1700° per second. As the bar goes through below, the hoop "
+        "presses on the ice with 9.4 times the weight of both. After 0.10 s the bar comes up "
+        "behind and lifts the hoop, which flies 34 mm high: about its radius. The film ends just "
+        "before the landing.",
         still=0.2,
         style=FilmStyle(
             "Why does a hoop fly? The bar on its rim lifts it",
@@ -220,8 +207,7 @@ COMMANDS = {
     "frozen": "mjbeer render frozen --phi0 180 --duration 0.82 --tolerance 1e-9 --speed 0.2",
     "pendulum": "mjbeer render pendulum --phi0 60 --duration 1.5 --tolerance 1e-9 --speed 0.25",
     "hoop": "mjbeer render hoop --hoop-mass 0.06 --phi0 -90 --phi-dot0 1700 --duration 0.26 "
-    "--rolling contact "
-    "--friction 0.01 --timestep 1e-4 --speed 0.06",
+    "--rolling contact --friction 0.01 --timestep 1e-4 --speed 0.06",
 }
 """Commands that draw a film by itself; `mjbeer report` draws the others."""
 
