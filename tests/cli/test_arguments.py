@@ -38,9 +38,9 @@ def test_help_states_the_unit_of_every_number() -> None:
     for command, scenes in SCENES_OF.items():
         for name in scenes:
             for option in scene_options(name, command):
-                if option.kind in (angle, angles):
+                if option.read in (angle, angles):
                     assert "[degrees" in option.help, option.name
-                elif option.kind in (float, numbers) and option.default is not False:
+                elif option.read in (float, numbers) and not (option.flag or option.choices):
                     has_unit = re.search(r"\[\S", option.help)
                     assert has_unit or option.name in PURE_NUMBERS, option.name
 

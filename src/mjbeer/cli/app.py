@@ -66,16 +66,16 @@ class Parser(argparse.ArgumentParser):
     def add_options(self, options: Iterable[Option]) -> None:
         """Add options, whose help ends with their defaults."""
         for option in options:
-            if option.default is False:
+            if option.flag:
                 self.add_argument(option.name, help=option.help, action="store_true")
                 continue
             settings: dict[str, Any] = {"help": option.help, "default": option.default}
-            if isinstance(option.kind, tuple):
-                settings["choices"] = option.kind
+            if option.choices:
+                settings["choices"] = option.choices
             else:
-                settings["type"] = option.kind
-                settings["metavar"] = option.kind.__name__.upper()
-            if isinstance(option.default, list):
+                settings["type"] = option.read
+                settings["metavar"] = option.read.__name__.upper()
+            if option.several:
                 settings["nargs"] = "+" if option.name.startswith("-") else "*"
             elif option.default is not None:
                 settings["help"] += " (default: %(default)s)"

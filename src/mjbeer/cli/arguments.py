@@ -100,31 +100,31 @@ def known(text: str) -> tuple[str, tuple[float, float]]:
 
 
 class Option(NamedTuple):
-    """An option, or a word if its name has no dashes.
-
-    It takes several values if its default is a list, and none if it is False.
-    """
+    """An option, or a word if its name has no dashes."""
 
     name: str
     help: str
     default: Any = None
-    kind: Any = float
-    """A function that reads a value, also the default if that is a text; or all values that are
-    allowed."""
+    read: Any = float
+    """A function that reads a value, also the default if that is a text."""
+    choices: tuple[str, ...] = ()
+    """All values that are allowed, if not those that `read` takes."""
+    several: bool = False
+    """Whether it takes several values."""
+    flag: bool = False
+    """Whether it takes none, and is true where it is given."""
 
 
 _MODEL = (
     Option(
         "--rolling",
         "reduced coordinates (default), joint equality (default to view), or contact",
-        None,
-        ROLLINGS,
+        choices=ROLLINGS,
     ),
     Option(
         "--integrator",
         "MuJoCo's or mjbeer's; by default RK4, or what keeps a tolerance",
-        None,
-        MUJOCO_INTEGRATORS + MJBEER_INTEGRATORS,
+        choices=MUJOCO_INTEGRATORS + MJBEER_INTEGRATORS,
     ),
     Option(
         "--timestep", "timestep; with a tolerance, interval between samples [s]", Setting.timestep
@@ -139,7 +139,7 @@ _RUN = (
     ),
     *_MODEL,
 )
-_JSON = Option("--json", "print the results as JSON", False)
+_JSON = Option("--json", "print the results as JSON", flag=True)
 _FOLDER = "folder to write to, which is new, empty, or this command's own"
 OPTIONS = {
     "simulate": (
@@ -155,7 +155,7 @@ OPTIONS = {
             "--camera",
             "fixed, pan (moves along evenly), or auto (pan where the can would be small)",
             "auto",
-            CAMERAS,
+            choices=CAMERAS,
         ),
         Option("--width", "width of the video [pixels]", 1280, int),
         Option("--height", "height of the video [pixels]", 720, int),
@@ -172,7 +172,7 @@ OPTIONS = {
         Option(
             "--portable",
             "write MJCF that other tools load too: docs/portability.md has each tool's error",
-            False,
+            flag=True,
         ),
     ),
     "fit": (
@@ -181,12 +181,14 @@ OPTIONS = {
             "what is sought, of incline, fill, damping, drag; a scene's options are guesses",
             [],
             str,
+            several=True,
         ),
         Option(
             "--known",
             "measured values with their errors, as fill=0.5±0.005 [incline in degrees]",
             [],
             known,
+            several=True,
         ),
         Option(
             "--phi0",
@@ -202,6 +204,7 @@ OPTIONS = {
             "columns by heading or number, as time=1 x=3; by default the usual headings",
             [],
             str,
+            several=True,
         ),
         Option("--rate", "pictures per second, where frames are numbered and have no times [1/s]"),
         Option("--output", "plot (.svg, .png) or film (.mp4) to write", None, Path),
@@ -222,28 +225,31 @@ OPTIONS = {
             Path,
         ),
     ),
-    "validate": (Option("--table", "print every row, not only those that failed", False), _JSON),
+    "validate": (
+        Option("--table", "print every row, not only those that failed", flag=True),
+        _JSON,
+    ),
     "benchmark": (
-        Option("scenes", f"of {', '.join(CASES)}; by default all", [], str),
+        Option("scenes", f"of {', '.join(CASES)}; by default all", [], str, several=True),
         Option("--output", _FOLDER, "benchmark", Path),
-        Option("--quick", "try fewer timesteps and tolerances; takes two minutes", False),
+        Option("--quick", "try fewer timesteps and tolerances; takes two minutes", flag=True),
     ),
     "stability": (
         Option(
             "--output", f"{_FOLDER}; an interrupted study in it is continued", "stability", Path
         ),
-        Option("--quick", "coarser maps, 250 random runs, not 3000; two minutes", False),
+        Option("--quick", "coarser maps, 250 random runs, not 3000; two minutes", flag=True),
     ),
     "paper": (
         Option("--output", _FOLDER, "paper", Path),
-        Option("--films", "also draw films of the motions", False),
+        Option("--films", "also draw films of the motions", flag=True),
     ),
     "report": (
         Option("--output", _FOLDER, "report", Path),
         Option(
             "--quick",
             "draw smaller videos with fewer frames, and no films for the paper's scenarios",
-            False,
+            flag=True,
         ),
     ),
 }
@@ -259,14 +265,16 @@ def scene_options(name: str, command: str) -> list[Option]:
     """
     number = numbers if command == "sweep" else float
     degrees = angles if command == "sweep" else angle
-    kinds = {"can": tuple(_CANS), "liquid": NAMES, "incline": degrees, "modes": int}
+    choices = {"can": tuple(_CANS), "liquid": NAMES}
+    reads = {"incline": degrees, "modes": int}
     defaults = _defaults(name)
     options = [
         Option(
             "--" + argument.replace("_", "-"),
             meaning,
             defaults[argument],
-            kinds.get(argument, number),
+            reads.get(argument, number),
+            choices.get(argument, ()),
         )
         for argument, meaning in _MEANINGS.items()
         if argument in defaults
