@@ -12,7 +12,7 @@ from mjbeer.exceptions import RenderingError
 from mjbeer.output import files, plots
 from mjbeer.paper import stories
 from mjbeer.paper.checks import Check
-from mjbeer.paper.stories import Story
+from mjbeer.paper.stories import PlotSize, Story
 from mjbeer.report import page
 from mjbeer.studies.benchmark.points import SHIPPED, Benchmark
 from mjbeer.studies.validation import validate as validation
@@ -59,7 +59,7 @@ def draw(monkeypatch: pytest.MonkeyPatch, fail_at: str = "") -> list[video.FilmJ
     monkeypatch.setattr(video, "produce", lambda orders, _: [order.write() for order in orders])
     monkeypatch.setattr(opengl, "problem", lambda: None)
     story = Story(
-        "told", "A story & a title", "", "A stub's story.", (1, 1, 4, 3), lambda panels: None, film
+        "told", "A story & a title", "", "A stub's story.", PlotSize(1, 1, 4, 3), lambda panels: None, film
     )
     monkeypatch.setattr(stories, "STORIES", (story,))
     monkeypatch.setattr(page, "plot_jobs", few)

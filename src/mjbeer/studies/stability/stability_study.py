@@ -212,13 +212,6 @@ def tables(study: Study) -> list[Table]:
     return [maps, *search_tables(totals(study.results), study.results)]
 
 
-def to_json(study: Study) -> str:
-    """Return the study as one JSON document: all results, and the totals of the search as numbers."""
-    content = study.about | {"failed": [result.name for result in study.failed]}
-    content |= {"totals": totals(study.results), "results": [result.as_json() for result in study.results]}
-    return json.dumps(content) + "\n"
-
-
 def write(study: Study, folder: pathlib.Path) -> None:
     """Write stability.jsonl, maps.json, totals.json, the plots of the maps, and summary.md into a folder.
 
