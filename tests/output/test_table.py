@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 from mjbeer import Scene, simulate
+from mjbeer.checks.check import Result
 from mjbeer.output import terminal
 from mjbeer.output.terminal import Table
-from mjbeer.paper.checks import Result
 from mjbeer.paper.claim import CONFIRMED, CORRECTED
 from mjbeer.studies.validation.validate import Validation
 from mjbeer.theory.trajectory import csv

@@ -18,7 +18,7 @@ import xarray
 import mjbeer
 from mjbeer import Can, LiquidWarning, Scene, Trajectory, frozen, liquid, pendulum, simulate, sliding
 from mjbeer.exceptions import OutputError, ParameterError
-from mjbeer.output import files
+from mjbeer.output import jobs
 from mjbeer.studies import sweep_runs
 from mjbeer.studies.sweep_runs import BEYOND, DIVERGED, NO_VALUE, NOT_REACHED, NOT_YET, REFUSED, WELL
 
@@ -84,7 +84,7 @@ def test_the_result_is_the_same_with_any_number_of_threads_and_in_any_pieces(mon
 
 @pytest.mark.slow
 def test_the_result_is_the_same_in_processes() -> None:
-    with files.pool(2) as pool:
+    with jobs.pool(2) as pool:
         assert sweep_of_sliding(quantity=highest).identical(sweep_of_sliding(quantity=highest, executor=pool))
         with pytest.raises(ParameterError, match="must be defined at the top of a module to be sent to processes"):
             mjbeer.sweep(lambda incline: sliding(incline, 0.4), 0.1, 1.0, incline=INCLINES, executor=pool)

@@ -80,7 +80,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             cast("Any", warnings).showwarning = lambda message, *_: say(f"note: {message}", "yellow")
             return COMMANDS[given.command](given) or 0
     except (MjbeerError, OSError) as error:  # OSError: a limit of the machine, such as too many processes
-        say(f"mjbeer: {error}", "red")
+        words = [str(error), *getattr(error, "__notes__", ())]  # a note names the job that failed
+        say(f"mjbeer: {', '.join(words)}", "red")
         return 2
     except KeyboardInterrupt as error:
         say("mjbeer: interrupted; what was written is whole", "red")

@@ -9,7 +9,6 @@ from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
-from types import SimpleNamespace
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
@@ -18,9 +17,10 @@ from markupsafe import Markup, escape
 from rich.console import Console
 
 from mjbeer import paper
-from mjbeer.drawing import opengl, video
+from mjbeer.drawing import opengl
 from mjbeer.drawing.video import PlotJob
-from mjbeer.output import files
+from mjbeer.output import files, jobs
+from mjbeer.output.jobs import Job
 from mjbeer.output.plots import Picture
 from mjbeer.paper import stories
 from mjbeer.report import films
@@ -59,8 +59,9 @@ def write(folder: pathlib.Path, quick: bool, console: Console) -> tuple[Validati
         not_drawn = opengl.missing([each.path.stem for each in filmed]) if opengl.problem() else ""
         filmed = [] if not_drawn else filmed
         # The checks take longest, and compile what the films run; plots are quick.
-        checks = SimpleNamespace(path=folder / "checks", write=partial(validate, None))
-        validation, *made = video.produce([checks, *filmed, *plot_jobs(folder)], console)
+        checks = Job("the checks", partial(validate, None))
+        drawn = [Job(order.path.name, order.write) for order in (*filmed, *plot_jobs(folder))]
+        validation, *made = jobs.run_jobs([checks, *drawn], console)
         stills, plots = made[: len(filmed)], made[len(filmed) :]
         shown = {each.path.stem: (each.path.read_bytes(), still) for each, still in zip(filmed, stills, strict=True)}
         pictures = {plot.name: plot for plot in plots if plot}

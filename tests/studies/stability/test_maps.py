@@ -10,9 +10,9 @@ from functools import partial
 
 import pytest
 
+from mjbeer.checks.check import Check, Result
 from mjbeer.cli.app import main
 from mjbeer.model.setting import Integrator
-from mjbeer.paper.checks import Check, Result
 from mjbeer.studies import predictions
 from mjbeer.studies.predictions import SoftRow
 from mjbeer.studies.stability import stability_maps, stability_study

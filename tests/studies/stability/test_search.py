@@ -12,14 +12,14 @@ import secrets
 import pytest
 
 import mjbeer
+from mjbeer.checks.check import Result
 from mjbeer.exceptions import ParameterError
-from mjbeer.paper.checks import Result
-from mjbeer.studies import study
 from mjbeer.studies.stability import stability_study
 from mjbeer.studies.stability.judge import BOTH, DOUBTED, REFUSED, RIGHT, SILENT, THEORY, Outcome, Trial
 from mjbeer.studies.stability.known_cases import KnownCase, Variant, cases
 from mjbeer.studies.stability.regions import REGIONS, random_trial
 from mjbeer.studies.stability.stability_study import RANDOM, SIZE, batch, random_checks, totals, try_case
+from mjbeer.studies.study import run_checks
 
 pytestmark = pytest.mark.slow
 
@@ -37,7 +37,7 @@ def test_no_run_is_wrong_and_silent() -> None:
     if EXAMPLES is None:
         assert not batch(0, FIXED)["silent"]
         return
-    results = list(study.measured(random_checks(int(EXAMPLES), secrets.randbelow(10**9)), lambda _: None))
+    results = list(run_checks(random_checks(int(EXAMPLES), secrets.randbelow(10**9)), None))
     for table in stability_study.search_tables(totals(results), results):
         print(table.markdown())
     assert all(result.passed for result in results)

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from mjbeer import Scene, simulate, sliding
-from mjbeer.paper.checks import Check, Result
+from mjbeer.checks.check import Check, Result
 from mjbeer.simulation.run import Run
 from mjbeer.studies.validation import motion_checks as motions
 from mjbeer.studies.validation.validate import Validation, checks

@@ -20,6 +20,7 @@ from matplotlib.colors import ListedColormap
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from mjbeer.checks.check import Check, Result
 from mjbeer.exceptions import DivergenceError
 from mjbeer.integrators.dop853 import DOP853
 from mjbeer.integrators.dynamics import Dynamics
@@ -29,7 +30,6 @@ from mjbeer.model.joints import joint_addresses
 from mjbeer.model.setting import MUJOCO_INTEGRATORS, Integrator
 from mjbeer.output.plots import COLOURS, chart, name_below
 from mjbeer.output.terminal import Table
-from mjbeer.paper.checks import Check, Result
 from mjbeer.studies import predictions
 from mjbeer.studies.predictions import ACCURACY, GROWTH, spring
 from mjbeer.studies.study import FAILED

@@ -17,11 +17,12 @@ from typing import Any
 
 from rich.console import Console
 
+from mjbeer.checks.as_json import document
+from mjbeer.checks.check import Check, Result
 from mjbeer.exceptions import ParameterError
 from mjbeer.model.setting import supported
 from mjbeer.output import files
 from mjbeer.output.terminal import Table
-from mjbeer.paper.checks import Check, Result
 from mjbeer.studies import study as studies
 from mjbeer.studies.stability import stability_maps
 from mjbeer.studies.stability.judge import DOUBTED, JUDGES, REFUSED, RIGHT, SILENT, VERDICTS, judge
@@ -228,7 +229,7 @@ def write(study: Study, folder: pathlib.Path) -> None:
     study.save(folder / FINISHED)
     maps = ({"name": of.name, "worst": of.error, **of.values} for of in study.of(stability_maps.MAPS))
     dated = study.about | {"date": datetime.date.today().isoformat()}
-    files.write(folder / "maps.json", studies.document(dated, stability_maps.MAPS, maps))
+    files.write(folder / "maps.json", document(dated, stability_maps.MAPS, maps))
     files.write(folder / "totals.json", json.dumps(study.about | totals(study.results), indent=1) + "\n")
     count = len(study.failed)
     verdict = f"**{count} did not come out as they must.**" if count else "All came out as they must."

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from mjbeer.checks.check import Check
 from mjbeer.model.setting import MUJOCO_INTEGRATORS, Integrator, Rolling, supported
-from mjbeer.paper.checks import Check
 from mjbeer.paper.frozen import equilibrium_53
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import Can

@@ -8,12 +8,12 @@ import mujoco
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
+from mjbeer.checks.check import Check
 from mjbeer.model.attach import attach
 from mjbeer.model.build import build
 from mjbeer.model.free import transverse_inertia
 from mjbeer.model.mujoco_library import quiet
 from mjbeer.model.setting import MujocoIntegrator
-from mjbeer.paper.checks import Check
 from mjbeer.theory.standing import SERIES, Reaction, Standing, standing
 
 SHARES = (0.2, 0.4, 0.6, 0.8, 1.2, 1.4, 2.0, 4.0)

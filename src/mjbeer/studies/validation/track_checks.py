@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from mjbeer.paper.checks import Check
+from mjbeer.checks.check import Check
 from mjbeer.theory.can import Can
 from mjbeer.theory.liquid import liquid, liquid_in
 from mjbeer.theory.scene import Scene, frozen, sliding

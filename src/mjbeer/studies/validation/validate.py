@@ -5,8 +5,9 @@ from dataclasses import dataclass
 from rich.console import Console
 
 from mjbeer import paper
+from mjbeer.checks.as_json import to_json
+from mjbeer.checks.check import Check, Result
 from mjbeer.output.terminal import Table, progress_bar
-from mjbeer.paper.checks import Check, Result, to_json
 from mjbeer.studies.study import FAILED, machine
 from mjbeer.studies.validation import motion_checks, standing_checks, track_checks
 
