@@ -48,7 +48,7 @@ def test_a_full_disk_leaves_the_old_file(tmp_path: pathlib.Path) -> None:
 def test_what_cannot_be_written_is_known_before_the_work(
     words: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    work = ["report.page.validate", "studies.benchmark.timing.conduct", "studies.stability.stability_study.conduct"]
+    work = ["report.page.validate", "studies.benchmark.timing.conduct", "studies.stability.stability_study.run"]
     work.append("drawing.video._mediapy" if words == "render frozen" else "cli.motions.trajectory_of")
     for each in work:
         monkeypatch.setattr(f"mjbeer.{each}", lambda *_, **__: pytest.fail("the work was begun"))
@@ -64,7 +64,7 @@ def test_what_cannot_be_written_is_known_before_the_work(
 def test_a_folder_of_others_is_refused_before_the_work(
     command: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    for work in ("report.page.write", "studies.benchmark.timing.conduct", "studies.stability.stability_study.conduct"):
+    for work in ("report.page.write", "studies.benchmark.timing.conduct", "studies.stability.stability_study.run"):
         monkeypatch.setattr(f"mjbeer.{work}", lambda *_: pytest.fail("the work was begun"))
     monkeypatch.setattr("mjbeer.paper.stories.write", lambda *_: pytest.fail("the work was begun"))
     names = ["index.html", "stories.md", "summary.md"]
@@ -90,7 +90,7 @@ def test_old_results_stay_if_a_command_is_interrupted_at_its_end(
     stubs.draw(monkeypatch)
     study = Study("mjbeer stability", {"quick": True}, {})
     monkeypatch.setattr("mjbeer.studies.benchmark.timing.conduct", lambda *_: Benchmark.load(SHIPPED))
-    monkeypatch.setattr("mjbeer.studies.stability.stability_study.conduct", lambda *_: study)
+    monkeypatch.setattr("mjbeer.studies.stability.stability_study.run", lambda *_: study)
     monkeypatch.setattr("mjbeer.studies.stability.stability_maps.figures", lambda _: {})
     words = [command, "--output", str(tmp_path)]
     assert main(words) == 0

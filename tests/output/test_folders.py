@@ -126,7 +126,7 @@ def test_a_second_command_in_a_folder_is_refused_until_the_first_is_gone(
         "paper.stories.write",
         "report.page.write",
         "studies.benchmark.timing.conduct",
-        "studies.stability.stability_study.conduct",
+        "studies.stability.stability_study.run",
     ):
         monkeypatch.setattr(f"mjbeer.{work}", lambda *_: pytest.fail("it was begun"))
     folder = tmp_path / "new"

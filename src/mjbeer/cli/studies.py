@@ -96,7 +96,7 @@ def stability(given: Namespace) -> int:
     from mjbeer.studies.stability import stability_study as stability
 
     with owned(given.output, stability.COMMAND):
-        study = stability.conduct(given.output, given.quick, STDERR)
+        study = stability.run(given.output, given.quick, STDERR)
         with replaced(given.output) as folder:
             stability.write(study, folder)
         (given.output / stability.UNFINISHED).unlink(missing_ok=True)

@@ -97,7 +97,7 @@ def page(
     # The least and the largest run time of another tool over that of mjbeer's best setting, at equal error.
     spans = {name: benchmark_tables.span(benchmark, name) for name in ("MuJoCo RK4", "heyoka")}
     slower = {name: " to ".join(map(benchmark_tables.two_digits, span)) for name, span in spans.items()}
-    runs, border = stability_maps.summary(maps["maps"])
+    runs, border = stability_maps.summary(maps.maps)
     claims = {(claim.equation, claim.quantity): claim for claim in paper.claims() if claim.misprint}
     misprints = [
         (result, claims[name]) for result in validation.audit if (name := (result.group, result.name)) in claims

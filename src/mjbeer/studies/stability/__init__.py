@@ -1,1 +1,2 @@
-"""`mjbeer stability` simulates stiff and extreme scenes, and measures up to which timestep motions stay stable."""
+"""`mjbeer stability` simulates stiff and extreme scenes, and measures up to which timestep motions
+stay stable."""

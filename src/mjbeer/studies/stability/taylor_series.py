@@ -1,13 +1,14 @@
-"""A second exact motion, from the Lagrangian in u and phi by Taylor series; it shares no code with `mjbeer.theory`.
+"""A second exact motion, from the Lagrangian in u and phi by Taylor series; it shares no code with
+`mjbeer.theory`.
 
-A load at the angle phi is at s = u - b sin(phi) along the incline and at -b cos(phi) across it. With
-M = m + m_can + I_can/a^2, and g_s and g_c for gravity along and across the incline,
+A load at the angle phi is at s = u - b sin(phi) along the incline and at -b cos(phi) across it.
+With M = m + m_can + I_can/a^2, and g_s and g_c for gravity along and across the incline,
 
     T = 1/2 (M - m) u'^2 + 1/2 m ((u' - b cos(phi) phi')^2 + (b sin(phi) phi')^2) + 1/2 I phi'^2,
     V = -(m + m_can) g_s u - m b (g_c cos(phi) - g_s sin(phi)).
 
-A sliding load has both coordinates free: (M u - m b sin(phi))'' = (m + m_can) g_s, and with u'' eliminated, so that
-nothing is left that cancels,
+A sliding load has both coordinates free: (M u - m b sin(phi))'' = (m + m_can) g_s, and with u''
+eliminated, so that nothing is left that cancels,
 
     (M I + m b^2 (M - m) + (m b sin(phi))^2) phi''
       = -m b (M g_c sin(phi) + I_can/a^2 g_s cos(phi)) - (m b)^2 sin(phi) cos(phi) phi'^2.
@@ -21,9 +22,9 @@ With s = sin(f phi), c = cos(f phi) and v = phi' both have the form
 
     phi'' = (t0 + t1 s^2 + n1 s + n2 c - (t2 + t3 v^2) s c) / (d0 + d1 s^2).
 
-The coefficients of the power series of phi(t) follow one after the other from those of s, c and v (A. Jorba and
-M. Zou, A software package for the numerical integration of ODEs by means of high-order Taylor methods, Experimental
-Mathematics 14, 2005).
+The coefficients of the power series of phi(t) follow one after the other from those of s, c and v
+(A. Jorba and M. Zou, A software package for the numerical integration of ODEs by means of
+high-order Taylor methods, Experimental Mathematics 14, 2005).
 """
 
 import math
@@ -38,18 +39,22 @@ from mjbeer.theory.scene import Scene
 MOST_STEPS = 400_000
 """Largest number of steps of a motion, which take some two seconds. A swing takes about twenty."""
 _ORDER = 28
-"""Order of the series. Between 24 and 32 the run time for a given error is the same within a tenth."""
+"""Order of the series. Between 24 and 32 the run time for a given error is the same within a tenth.
+"""
 _TAIL = 1e-18
-"""Size of the last terms of a step relative to the rate: a hundredth of the rounding of a double."""
+"""Size of the last terms of a step relative to the rate: a hundredth of the rounding of a double.
+"""
 _LAST = 3
 """Number of last terms that must be small: one or two may be small by chance."""
 
 
 def series(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float = 0.0) -> Coordinates:
-    """Return the undamped motion at increasing `times` [s] from `phi0` [rad] with `phi_dot0` [rad/s] at time 0.
+    """Return the undamped motion at increasing `times` [s] from `phi0` [rad] with `phi_dot0`
+    [rad/s] at time 0.
 
-    A sliding load starts at s = 0 with s' = 0, a frozen one at u = a phi. The unit of time is a power of two near the
-    fastest time of the motion, so that no conversion is rounded, and no coefficient overflows.
+    A sliding load starts at s = 0 with s' = 0, a frozen one at u = a phi. The unit of time is a
+    power of two near the fastest time of the motion, so that no conversion is rounded, and no
+    coefficient overflows.
 
     Raises:
       ToleranceError: if the motion takes more than `MOST_STEPS` steps.
@@ -80,16 +85,22 @@ def series(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float = 0.0) 
         fall = (m + m_can) * scene.gravity * math.sin(scene.incline)
         u = (place + speed * time + fall * time**2 / 2 + m * b * np.sin(phi)) / (m + rest)
         u_dot = (speed + fall * time + m * b * np.cos(phi) * phi_dot) / (m + rest)
-    angles = {"phi": phi, "phi_dot": phi_dot, "roll": u / can.radius, "roll_dot": u_dot / can.radius}
+    angles = {
+        "phi": phi,
+        "phi_dot": phi_dot,
+        "roll": u / can.radius,
+        "roll_dot": u_dot / can.radius,
+    }
     return Coordinates(time=time, u=u, u_dot=u_dot, lift=0 * u, lift_dot=0 * u, **angles)
 
 
 @njit(cache=True)
 def _integrate(form, phi0, phi_dot0, times, samples, most):
-    """Fill `samples` with phi and phi' at increasing `times`; return whether at most so many steps were enough.
+    """Fill `samples` with phi and phi' at increasing `times`; return whether at most so many steps
+    were enough.
 
-    What a step adds is computed in doubles. The sums over all steps are kept as pairs of doubles, so that their
-    rounding does not add up.
+    What a step adds is computed in doubles. The sums over all steps are kept as pairs of doubles,
+    so that their rounding does not add up.
     """
     phi, s, c = np.zeros(_ORDER + 1), np.zeros(_ORDER + 1), np.zeros(_ORDER + 1)
     work = np.zeros((4, _ORDER + 1))
@@ -110,7 +121,10 @@ def _integrate(form, phi0, phi_dot0, times, samples, most):
             if time > step:
                 break
             turned, gained = _move(phi, time)
-            samples[sample, 0], samples[sample, 1] = angle + (angle_low + turned), rate + (rate_low + gained)
+            samples[sample, 0], samples[sample, 1] = (
+                angle + (angle_low + turned),
+                rate + (rate_low + gained),
+            )
             sample += 1
         if sample == len(times):
             return True
@@ -123,7 +137,7 @@ def _integrate(form, phi0, phi_dot0, times, samples, most):
 
 @njit(cache=True)
 def _expand(form, phi, s, c, work):
-    """Fill the series of phi, s and c in time; their first coefficients (two of phi) must be there."""
+    """Fill the series of phi, s and c in time from their first coefficients (two of phi)."""
     factor, t0, t1, n1, n2, t2, t3, d0, d1 = form
     vv, ss, sc, acceleration = work
     for k in range(_ORDER - 1):
@@ -159,7 +173,8 @@ def _move(phi, time):
 
 @njit(cache=True)
 def _add(high, low, more):
-    """Return the sum of a pair of doubles and a double, as a pair whose second double is the rounding of the first."""
+    """Return the sum of a pair of doubles and a double, as a pair whose second double is the
+    rounding of the first."""
     total = high + more
     part = total - high
     rounding = (high - (total - part)) + (more - part) + low
