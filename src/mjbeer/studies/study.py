@@ -1,5 +1,4 @@
-"""A study: checks that are measured, kept on disk one by one, resumed after an interruption, and
-shown in tables."""
+"""A study: checks that are measured and kept on disk one by one, even if it is interrupted."""
 
 import json
 import os
@@ -46,7 +45,7 @@ class Study:
         try:
             head, *lines = path.read_text(encoding="utf-8").splitlines()
             study = cls(**json.loads(head))
-            study.results = [Result(**json.loads(each)) for each in lines]
+            study.results = [Result(**json.loads(line)) for line in lines]
             if study.command != command:
                 raise ValueError(f"it is of `{study.command}`")
         except (OSError, ValueError, TypeError) as error:
@@ -69,10 +68,10 @@ class Study:
 
     def save(self, path: pathlib.Path) -> None:
         """Write the study to a file, as lines of JSON: what it is of, and a line each result."""
-        files.write(
-            path,
-            "".join(map(to_json, [self.about, *(result.as_json() for result in self.results)])),
-        )
+        lines = [to_json(self.about)]
+        for result in self.results:
+            lines.append(to_json(result.as_json()))
+        files.write(path, "".join(lines))
 
 
 def run(
@@ -138,17 +137,23 @@ def run_checks(checks: Sequence[Check], console: Console | None) -> Generator[Re
 
 def machine() -> dict[str, Any]:
     """Return what run times and rounding depend on: processor, system, and versions of packages."""
-    about = pathlib.Path("/proc/cpuinfo")
-    named = (
-        re.search(r"model name\s*: (.*)", about.read_text(encoding="utf-8"))
-        if about.exists()
-        else None
-    )
-    versions = {each.name: each.version for each in distributions() if each.name in _PACKAGES}
+    versions = {}
+    for distribution in distributions():
+        versions[distribution.name] = distribution.version
     return {
-        "processor": named[1] if named else platform.processor() or platform.machine(),
+        "processor": _processor(),
         "cores": os.cpu_count(),
         "system": platform.platform(terse=True),
         "python": platform.python_version(),
         "versions": {name: versions[name] for name in _PACKAGES if name in versions},
     }
+
+
+def _processor() -> str:
+    """Return the processor's name, as the system has it."""
+    about = pathlib.Path("/proc/cpuinfo")
+    if about.exists():
+        named = re.search(r"model name\s*: (.*)", about.read_text(encoding="utf-8"))
+        if named:
+            return named[1]
+    return platform.processor() or platform.machine()
