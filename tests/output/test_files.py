@@ -36,7 +36,10 @@ def test_a_file_keeps_its_permissions_and_nobody_else_reads_the_new_one_before(
 def test_a_folder_that_may_be_misspelt_is_not_made(tmp_path: pathlib.Path) -> None:
     """Where a folder is to be written to, its last name may be new, and its others may not."""
     for write in (lambda path: files.write(path, ""), files.make_folder):
-        with pytest.raises(OutputError, match=f"there is no folder {tmp_path}/reslts; the nearest .* is {tmp_path}$"):
+        with pytest.raises(
+            OutputError,
+            match=f"there is no folder {tmp_path}/reslts; the nearest .* is {tmp_path}$",
+        ):
             write(tmp_path / "reslts" / "new")
     assert not os.listdir(tmp_path)
     for _ in range(2):
@@ -45,7 +48,9 @@ def test_a_folder_that_may_be_misspelt_is_not_made(tmp_path: pathlib.Path) -> No
 
 
 @pytest.mark.parametrize("error", [RuntimeError("drawing failed"), KeyboardInterrupt()])
-def test_what_fails_leaves_the_old_file_and_nothing_else(tmp_path: pathlib.Path, error: BaseException) -> None:
+def test_what_fails_leaves_the_old_file_and_nothing_else(
+    tmp_path: pathlib.Path, error: BaseException
+) -> None:
     target = tmp_path / "film.mp4"
     target.write_text("old")
 

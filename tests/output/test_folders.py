@@ -1,4 +1,5 @@
-"""Folders of results: those of others are refused, and what is there stays until what replaces it is whole."""
+"""Folders of results: those of others are refused, and what is there stays until what replaces it
+is whole."""
 
 import os
 import pathlib
@@ -92,7 +93,10 @@ def test_a_folder_with_files_of_others_is_refused_and_stays(tmp_path: pathlib.Pa
         (tmp_path / name).write_text("mine")
     with pytest.raises(OutputError) as caught:
         write(tmp_path, "new")
-    told = f"cannot write to {tmp_path}: `mjbeer test` did not write what is there (a.html, b.html, c.html and 2 more)"
+    told = (
+        f"cannot write to {tmp_path}: `mjbeer test` did not write what is there "
+        "(a.html, b.html, c.html and 2 more)"
+    )
     assert str(caught.value) == f"{told}: name a new or an empty folder"
     assert sorted(os.listdir(tmp_path)) == names
 

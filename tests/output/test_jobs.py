@@ -1,4 +1,5 @@
-"""Jobs in other processes: what comes back, what names a job that fails, and what an interruption leaves."""
+"""Jobs in other processes: what comes back, what names a job that fails, and what an interruption
+leaves."""
 
 import multiprocessing
 import os

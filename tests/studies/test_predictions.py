@@ -1,4 +1,5 @@
-"""Linear theory against mpmath, closed forms, and the errors of simulations; each fails on a wrong theory."""
+"""Linear theory against mpmath, closed forms, and the errors of simulations; each fails on a wrong
+theory."""
 
 import math
 
@@ -11,7 +12,14 @@ from scipy.integrate import DOP853
 from mjbeer import Can, Scene, frozen, pendulum, sliding
 from mjbeer.studies import predictions
 from mjbeer.studies.benchmark.timing import usual_model
-from mjbeer.studies.predictions import RUNGE_KUTTA, amplification, error, polynomial, reached_share, spectral_radius
+from mjbeer.studies.predictions import (
+    RUNGE_KUTTA,
+    amplification,
+    error,
+    polynomial,
+    reached_share,
+    spectral_radius,
+)
 from tests.support import rows
 
 EPS = np.finfo(float).eps
@@ -43,13 +51,18 @@ def test_the_polynomial_is_a_step_of_the_method(integrator: str, z: complex) -> 
 
 
 def test_limits_on_the_imaginary_axis() -> None:
-    """Bounded just below, not just above; an eigenvalue that is almost double is known to the root of rounding."""
+    """Bounded just below, not just above; an eigenvalue that is almost double is known to the root
+    of rounding."""
     for integrator, limit in (("Euler", 2.0), ("discrete", 2.0), ("RK4", 2 * math.sqrt(2))):
         assert spectral_radius(amplification(integrator, (limit * (1 - 1e-6)) ** 2)) <= 1 + 4 * EPS
         assert spectral_radius(amplification(integrator, (limit * (1 + 1e-6)) ** 2)) > 1 + 1e-6
         assert predictions.stable_limit(integrator) == pytest.approx(limit, rel=2e-3)
     limit = predictions.stable_limit("DOP853")
-    assert abs(by_stages("DOP853", 1j * limit * 0.997)) < 1 < abs(by_stages("DOP853", 1j * limit * 1.003))
+    assert (
+        abs(by_stages("DOP853", 1j * limit * 0.997))
+        < 1
+        < abs(by_stages("DOP853", 1j * limit * 1.003))
+    )
 
 
 @pytest.mark.slow
@@ -73,9 +86,12 @@ def test_discrete_bears_every_row(timestep: float) -> None:
 
 
 def test_errors_of_short_steps() -> None:
-    """Half of omega h for semi-implicit Euler; phase and damping together for RK4, over ten periods."""
+    """Half of omega h for semi-implicit Euler; phase and damping together for RK4, over ten
+    periods."""
     swing = 1e-3
-    assert error("Euler", swing) == pytest.approx(swing / 2, rel=2e-2)  # (omega h)^2/24 of phase a radian comes second
+    assert error("Euler", swing) == pytest.approx(
+        swing / 2, rel=2e-2
+    )  # (omega h)^2/24 of phase a radian comes second
     swing, angle = 0.1, 20 * math.pi
     wanted = angle * math.hypot(swing**4 / 120, swing**5 / 144)
     assert error("RK4", swing) == pytest.approx(wanted, rel=1e-2)  # the next order, (omega h)^2
@@ -84,11 +100,14 @@ def test_errors_of_short_steps() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("scene", [frozen(), METAL, pendulum()])
 def test_a_usual_joint_equality_has_a_share_of_its_force(scene: Scene) -> None:
-    """MuJoCo takes the diagonal of M^-1 for J M^-1 J^T with J = (1, -a), without regard to metres and radians."""
+    """MuJoCo takes the diagonal of M^-1 for J M^-1 J^T with J = (1, -a), without regard to metres
+    and radians."""
     model, row = usual_model("equality, defaults", scene), np.array([1.0, -scene.can.radius])
     data, mass = mujoco.MjData(model), np.zeros((model.nv, model.nv))
     mujoco.mj_forward(model, data)
     mujoco.mj_fullM(model, data, mass)
     inverse = np.linalg.inv(mass)[:2, :2]
     predicted = reached_share(0.9, np.trace(inverse) / (row @ inverse @ row))
-    assert rows.applied_share(model, np.zeros(model.nq + model.nv)) == pytest.approx(predicted, rel=ROUNDING)
+    assert rows.applied_share(model, np.zeros(model.nq + model.nv)) == pytest.approx(
+        predicted, rel=ROUNDING
+    )

@@ -1,11 +1,12 @@
-"""A sweep is what its scenes are one by one: to the last bit, in any executor, and near exact theory."""
+"""A sweep is what its scenes are one by one: to the last bit, in any executor, and near exact
+theory."""
 
 import math
 import pathlib
 import signal
 import warnings
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from functools import partial
 from typing import Any
 
@@ -78,37 +79,33 @@ def broken(trajectory: Trajectory) -> float:
     ],
 )
 def test_each_scene_is_what_simulate_gives_to_the_last_bit(setting: dict[str, Any]) -> None:
-    lost = {name: setting[name] for name in ("damping", "drag") if name in setting}
-    make, setting = (
-        partial(sliding, can=Can.sheet_metal(), **lost),
-        {k: v for k, v in setting.items() if k not in lost},
-    )
+    setting = dict(setting)
+    lost = {name: setting.pop(name) for name in ("damping", "drag") if name in setting}
+    make = partial(sliding, can=Can.sheet_metal(), **lost)
+
     swept = mjbeer.sweep(
         make, 0.3, 0.7, phi_dot0=[0.0, 2.0], incline=INCLINES[:2], fill=[0.3], **setting
     )
-    assert (tuple(swept.dims), swept["phi"].shape) == (("incline", "fill", "phi_dot0"), (2, 1, 2))
-    for (row, _, rate), status in np.ndenumerate(swept["status"].values):
-        single = simulate(
-            make(INCLINES[row], 0.3),
-            0.3,
-            0.7,
-            float(swept["phi_dot0"][rate]),
-            times=[0.3],
-            **setting,
-        )
-        found = {name: array.values[row, 0, rate] for name, array in swept.items()}
-        assert status == (BEYOND if single.rolling_warnings or single.liquid_warnings else WELL)
-        for name in ("phi", "u", "phi_dot", "u_dot"):
-            assert found[name] == getattr(single, name)[-1]
-        assert (found["error"], found["trusted"]) == (single.error_estimate, single.trusted)
-        assert (found["energy_drift"], found["friction_needed"]) == (
-            single.energy_drift,
-            single.record.needed_friction,
-        )
-        assert (found["lowest_normal"], found["parting_time"]) == (
-            single.record.lowest_normal,
-            single.record.rolling_ends_at,
-        )
+
+    assert tuple(swept.dims) == ("incline", "fill", "phi_dot0")
+    assert swept["phi"].shape == (2, 1, 2)
+    for (row, _, column), status in np.ndenumerate(swept["status"].values):
+        scene = make(INCLINES[row], 0.3)
+        phi_dot0 = float(swept["phi_dot0"][column])
+        run = simulate(scene, 0.3, 0.7, phi_dot0, times=[0.3], **setting)
+        values = {name: array.values[row, 0, column] for name, array in swept.items()}
+        beyond = bool(run.rolling_warnings or run.liquid_warnings)
+        assert status == (BEYOND if beyond else WELL)
+        assert values["phi"] == run.phi[-1]
+        assert values["u"] == run.u[-1]
+        assert values["phi_dot"] == run.phi_dot[-1]
+        assert values["u_dot"] == run.u_dot[-1]
+        assert values["error"] == run.error_estimate
+        assert values["trusted"] == run.trusted
+        assert values["energy_drift"] == run.energy_drift
+        assert values["friction_needed"] == run.record.needed_friction
+        assert values["lowest_normal"] == run.record.lowest_normal
+        assert values["parting_time"] == run.record.rolling_ends_at
 
 
 def test_the_result_is_the_same_with_any_number_of_threads_and_in_any_pieces(
@@ -122,16 +119,24 @@ def test_the_result_is_the_same_with_any_number_of_threads_and_in_any_pieces(
 
 @pytest.mark.slow
 def test_the_result_is_the_same_in_processes() -> None:
-    with jobs.pool(2) as pool:
-        assert sweep_of_sliding(quantity=highest).identical(
-            sweep_of_sliding(quantity=highest, executor=pool)
+    """That of a quantity with a name and of a function, too."""
+    asked = {"fill": FILLS[:2], "quantity": ["period", highest]}
+    here = sweep_of_sliding(**asked)
+
+    with jobs.pool(2) as processes:
+        there = sweep_of_sliding(**asked, executor=processes)
+
+    assert there.identical(here)
+
+
+def test_what_cannot_be_sent_to_processes_is_refused() -> None:
+    with (
+        ProcessPoolExecutor(1) as processes,
+        pytest.raises(ParameterError, match="must be defined at the top of a module to be sent"),
+    ):
+        mjbeer.sweep(
+            lambda incline: sliding(incline, 0.4), 0.1, 1.0, incline=INCLINES, executor=processes
         )
-        with pytest.raises(
-            ParameterError, match="must be defined at the top of a module to be sent to processes"
-        ):
-            mjbeer.sweep(
-                lambda incline: sliding(incline, 0.4), 0.1, 1.0, incline=INCLINES, executor=pool
-            )
 
 
 @pytest.mark.costly
@@ -257,8 +262,11 @@ def test_what_liquids_warn_of_is_said_once() -> None:
 
     with warnings.catch_warnings(record=True, action="always") as told:
         mjbeer.sweep(honey, 0.01, 1.0, tolerance=1e-6, fill=[0.4, 0.5, 0.6])
-    assert [(each.category, each.filename) for each in told] == [(LiquidWarning, __file__)]
-    assert "it coats the can" in str(told[0].message)
+
+    (warning,) = told
+    assert warning.category is LiquidWarning
+    assert warning.filename == __file__
+    assert "it coats the can" in str(warning.message)
 
 
 @pytest.fixture
@@ -274,30 +282,22 @@ def counted(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
 
 
 SWEEP_THAT_STOPS = """
-import sys, time, warnings
+import sys, time
 from mjbeer import frozen, sweep
 from mjbeer.studies import sweep as sweeps, sweep_runs
 from tests.studies.test_sweep import RESUMED
-saved = sweeps._save
-integrate = sweep_runs.integrate
-begun = 0
-def save(dataset, path):
-    saved(dataset, path)
-    done = int((dataset["status"] != sweep_runs.NOT_YET).sum())
-    print(f"saved {done}", flush=True)
-def integrate_few(*arguments):
-    global begun
-    begun += 1
-    if begun > 7:
-        print("asleep", flush=True)
+save = sweeps._save
+def save_and_stop(dataset, path):
+    save(dataset, path)
+    if (dataset["status"] != sweep_runs.NOT_YET).sum() >= int(sys.argv[2]):
+        print("saved", flush=True)
         time.sleep(3600)
-    return integrate(*arguments)
+sweeps._save = save_and_stop
 sweeps._SAVED_EVERY = 0.0
-sweeps._save = save
-sweep_runs.integrate = integrate_few
 sweep_runs._PIECE = 0.0
 sweep(frozen, **RESUMED, output=sys.argv[1])
 """
+"""It stops as soon as it has saved so many scenes, of which each is a piece of work."""
 RESUMED: dict[str, Any] = {
     "duration": 1.0,
     "phi0": 1.0,
@@ -317,23 +317,13 @@ def simulated(path: pathlib.Path) -> int:
 
 
 @pytest.mark.slow
-def test_a_sweep_that_is_killed_again_and_again_gets_on(
-    tmp_path: pathlib.Path, counted: list[Any]
-) -> None:
-    """Each process gets on by some scenes and then waits to be killed.
-
-    What failed before is told at the end; the first scene is simulated again by each process, to
-    see that it is the same.
-    """
+def test_a_sweep_that_is_killed_goes_on(tmp_path: pathlib.Path, counted: list[Any]) -> None:
+    """What failed before is told at the end, and the first scene is simulated again."""
     path = tmp_path / "map.nc"
-    before = 0
-    for _ in range(2):
-        with start([str(path)], SWEEP_THAT_STOPS) as process:
-            hear(process, "asleep")
-            interrupt(process, signal.SIGKILL)
-        assert simulated(path) > before
-        before = simulated(path)
-    assert before < 22
+    with start([str(path), "5"], SWEEP_THAT_STOPS) as process:
+        hear(process, "saved")
+        interrupt(process, signal.SIGKILL)
+    assert simulated(path) == 5
 
     whole = mjbeer.sweep(frozen, **RESUMED)
     assert "period: no equilibrium" in whole.failed
@@ -341,7 +331,7 @@ def test_a_sweep_that_is_killed_again_and_again_gets_on(
     resumed = mjbeer.sweep(frozen, **RESUMED, output=path)
 
     assert resumed.identical(whole)
-    assert len(counted) == 22 - before + 1
+    assert len(counted) == 22 - 5 + 1
     assert xarray.load_dataset(path, engine="scipy").identical(whole)
 
 
