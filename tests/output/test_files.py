@@ -12,7 +12,8 @@ from mjbeer.output import files
 
 
 def test_a_file_is_written_with_any_user_s_permissions(tmp_path: pathlib.Path) -> None:
-    target, usual = tmp_path / "motion.csv", tmp_path / "usual"
+    target = tmp_path / "motion.csv"
+    usual = tmp_path / "usual"
     usual.touch()
     files.write(target, "φ\n")
     assert target.read_bytes() == "φ\n".encode()
@@ -93,7 +94,9 @@ def test_a_disk_that_does_not_take_it_is_an_output_error(
 def test_a_link_stays_and_what_is_read_only_or_a_device_is_not_replaced(
     tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    link, target, pipe = tmp_path / "link.csv", tmp_path / "far" / "motion.csv", tmp_path / "pipe"
+    link = tmp_path / "link.csv"
+    target = tmp_path / "far" / "motion.csv"
+    pipe = tmp_path / "pipe"
     link.symlink_to(target)
     target.parent.mkdir()
     for text in ("made", "replaced"):

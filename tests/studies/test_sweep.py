@@ -272,7 +272,8 @@ def test_what_liquids_warn_of_is_said_once() -> None:
 @pytest.fixture
 def counted(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     """Everything that is simulated."""
-    ran, integrate = [], sweep_runs.integrate
+    ran: list[Any] = []
+    integrate = sweep_runs.integrate
     monkeypatch.setattr(
         sweep_runs,
         "integrate",

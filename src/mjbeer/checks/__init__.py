@@ -1,2 +1,1 @@
-"""Checks, their results, and both as JSON: what the paper, the validation and the studies have in
-common."""
+"""Checks and their results, also as JSON, for the paper, the validation and the studies."""

@@ -1,5 +1,4 @@
-"""Checks of models, of the paper and of how runs end: a measured error, its bound, and the reason
-for the bound."""
+"""Checks of models and of the paper: a measured error, its bound, and the reason for the bound."""
 
 import math
 from collections.abc import Callable
@@ -37,8 +36,7 @@ class Result:
 
     @property
     def passed(self) -> bool:
-        """Whether the error is within its bound, which NaN never is, and a misprint misses by what
-        is stated."""
+        """Whether the error is within its bound, and a misprint's is as stated; NaN never is."""
         if not self._misprint_is_as_expected:
             return False
         if self.bound == math.inf:
@@ -47,8 +45,7 @@ class Result:
 
     @property
     def _misprint_is_as_expected(self) -> bool:
-        """Whether the equation as printed has the error that it must have; true where nothing is
-        misprinted."""
+        """Whether what is misprinted, if anything is, has the error that it must have."""
         expected = self.values.get("expected_error")
         if expected is None:
             return True
@@ -56,8 +53,7 @@ class Result:
         return printed is not None and abs(printed / expected - 1) <= _EXPECTED_WITHIN
 
     def as_json(self) -> dict[str, Any]:
-        """Return the fields as JSON has them: those that are not empty, and None for numbers that
-        are not finite."""
+        """Return the fields that are not empty, as JSON has them: infinity and NaN are None."""
         fields = {
             name: value for name, value in asdict(self).items() if value not in ("", {}, math.inf)
         }
@@ -78,8 +74,7 @@ class Result:
 
 @dataclass(frozen=True)
 class Check:
-    """A quantity to be measured; the fields are those of `Result`, except for the function that
-    measures it."""
+    """A quantity to be measured; besides the function that measures it, as in `Result`."""
 
     group: str
     name: str

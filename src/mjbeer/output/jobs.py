@@ -1,5 +1,4 @@
-"""Jobs for other processes, one on every core, until all are finished or one fails or somebody
-interrupts them."""
+"""Jobs for other processes, one on every core: their results, failures and interruption."""
 
 import itertools
 import multiprocessing
@@ -57,8 +56,7 @@ def run_jobs(jobs: Sequence[Job], console: Console | None) -> list[Any]:
 
 
 def finished_jobs(jobs: Sequence[Job], console: Console | None) -> Generator[Finished]:
-    """Yield jobs as they are finished, from a process for each core, or from this one if one is
-    enough.
+    """Yield jobs as a process for each core finishes them, or this process if one is enough.
 
     The jobs begin in their order, without warnings, and `console` shows a progress bar. When the
     generator is closed, or an error or an interruption ends it, all processes end at once, and so
@@ -175,8 +173,7 @@ def _nothing() -> None:
 
 
 def _begin_worker() -> None:
-    """Make this process a worker, which belongs to its parent: in silence, and until the parent
-    ends or kills it.
+    """Make this process a worker, which is silent and does not outlive its parent.
 
     It leads a group of its own, to which all belongs that it starts, such as ffmpeg: an
     interruption from the terminal does not reach the group, and whoever kills the group leaves

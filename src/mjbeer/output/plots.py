@@ -55,8 +55,7 @@ _LETTERS = 8.3
 
 @dataclass
 class Picture:
-    """Where a plot goes that is no file: an SVG without title and subtitle, which are texts of
-    their own."""
+    """Where a plot goes that is no file: an SVG, and title and subtitle as texts of their own."""
 
     name: str
     title: str = ""

@@ -1,5 +1,4 @@
-"""Linear theory in advance: for which timesteps a small motion stays bounded, and for which
-accurate.
+"""Linear theory in advance: which timesteps keep a small motion bounded, and which accurate.
 
 **Integrators** turn linear equations q'' = -k q - b q' into x_{n+1} = G x_n for x = (q, h q'), with
 a matrix G of K = k h^2 and B = b h alone. A motion is bounded if no eigenvalue of G lies outside

@@ -108,8 +108,7 @@ class Grid:
         return ", ".join(f"{name}[{place}] = {value:.6g}" for (name, value), place in named)
 
     def groups(self) -> Iterator[tuple[str, list[int]]]:
-        """Yield the scenes that have a value in common, for each value, with a name such as
-        "fill[3]: "."""
+        """Yield the scenes that share a value, with a name such as "fill[3]: "."""
         if not self.axes:
             yield "", [0]
             return
@@ -136,8 +135,9 @@ def sweep(
     progress: bool = True,
     **parameters: Any,
 ) -> "xarray.Dataset":
-    """Return many scenes, simulated over a `duration` [s] each, as a Dataset with units and this
-    call as attributes.
+    """Return many scenes, simulated over a `duration` [s] each, as a Dataset.
+
+    Units and this call are its attributes.
 
     `make` returns a scene for its parameters, as `mjbeer.sliding` does. Those of the `parameters`
     that are lists or one-dimensional arrays are the dimensions of the sweep, in the order given,
@@ -245,8 +245,7 @@ def _asked(quantity: Asked | Sequence[Asked], grid: Grid) -> tuple[Quantity, ...
 
 
 def _times(duration: float, setting: Setting, every_step: bool) -> np.ndarray:
-    """Return the times of the samples of each run [s]: its end, or all timesteps if that is asked
-    for.
+    """Return the times of the samples of each run [s]: its end, or all timesteps.
 
     MuJoCo's integrators end at a timestep, the first one at or after the duration.
     """
@@ -264,8 +263,9 @@ def _times(duration: float, setting: Setting, every_step: bool) -> np.ndarray:
 
 
 def _checked(work: Work, grid: Grid) -> list[str]:
-    """Check that every value is allowed in some scene; return what liquids have warned of, once for
-    each kind.
+    """Check that every value is allowed in some scene.
+
+    What comes back is what liquids have warned of, once for each kind.
 
     Two values may be allowed, and their combination not: such a scene is left to fail by itself, as
     is one for which `make` raises an error of its own.
@@ -358,8 +358,9 @@ def _save(dataset: "xarray.Dataset", path: pathlib.Path) -> None:
 def _continued(
     path: pathlib.Path, new: "xarray.Dataset", work: Work, grid: Grid
 ) -> "xarray.Dataset":
-    """Return the sweep in a file, if it is the same: by coordinates, attributes and its first
-    scene's results.
+    """Return the sweep in a file, if it is the same.
+
+    Its coordinates, attributes and the results of its first scene show that.
 
     Raises:
       ParameterError: if it is not.
@@ -411,8 +412,7 @@ def _fill(
     path: pathlib.Path | None,
     progress: bool,
 ) -> None:
-    """Simulate the scenes that a sweep lacks, and write them into its arrays; save them if there is
-    a path."""
+    """Simulate the scenes that a sweep lacks into its arrays, and save them if there is a path."""
     scenes = np.flatnonzero(dataset["status"].values == NOT_YET)
     arrays = [variable.values for variable in dataset.values()]  # in the order of measurement
     failures = _Failures(grid, dataset.attrs["failed"])

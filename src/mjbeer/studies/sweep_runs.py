@@ -1,5 +1,4 @@
-"""The runs of a sweep: what is measured in each, and pieces of work for threads, processes, or a
-cluster."""
+"""The runs of a sweep: what is measured in each, and pieces of work for an executor."""
 
 import math
 import pickle
@@ -143,8 +142,7 @@ class Measured(NamedTuple):
 
 @contextmanager
 def collect_liquid_warnings() -> Generator[list[str]]:
-    """Yield a list that gets what liquids warn of in this block and this thread, instead of the
-    user."""
+    """Yield a list that gets what liquids warn of in this block and this thread."""
     messages: list[str] = []
     token = warn_of_liquid.set(lambda message, *_, **__: messages.append(message))
     try:
@@ -237,8 +235,7 @@ def run_all(
     parameters: Callable[[np.ndarray], list[dict[str, float]]],
     executor: Executor,
 ) -> Generator[tuple[np.ndarray, Measured]]:
-    """Yield the numbers of some scenes with what was measured on them, piece by piece, as pieces
-    come back.
+    """Yield the numbers of scenes and what was measured on them, piece by piece.
 
     `parameters` returns those that vary, for the numbers of scenes. What is measured on a scene
     does not depend on the piece that it is in. If the generator is closed, pieces that have not
@@ -269,8 +266,7 @@ def run_all(
 
 
 def _require_picklable(work: Work) -> None:
-    """Raise a ParameterError if the work cannot be sent to processes, which may hang at their end
-    then."""
+    """Raise a ParameterError for work that cannot be sent to processes, as they may hang then."""
     try:
         pickle.dumps(work)
     except (pickle.PicklingError, AttributeError, TypeError) as error:

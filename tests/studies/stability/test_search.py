@@ -15,7 +15,7 @@ from typing import NamedTuple
 import pytest
 
 import mjbeer
-from mjbeer.checks.check import Result
+from mjbeer.checks.check import Check, Result
 from mjbeer.exceptions import ParameterError
 from mjbeer.studies.stability import stability_study
 from mjbeer.studies.stability.judge import (
@@ -252,16 +252,22 @@ def test_a_bound_is_rounded_up(share: float, text: str) -> None:
 def test_a_study_draws_new_runs_and_an_interrupted_one_goes_on_with_its_own(
     tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    numbers, begun = iter(range(100, 200, 10)), []
+    numbers = iter(range(100, 200, 10))
+    begun = []
+
+    def plan(quick: bool, first: int) -> list[Check]:
+        begun.append((quick, first))
+        return []
+
     monkeypatch.setattr(secrets, "randbelow", lambda _: next(numbers))
-    monkeypatch.setattr(
-        stability_study, "plan", lambda quick, first: begun.append((quick, first)) or []
-    )
+    monkeypatch.setattr(stability_study, "plan", plan)
+
     for quick in (True, True, False, False):
         folder = tmp_path / str(quick)
         folder.mkdir(exist_ok=True)
-        found = stability_study.run(folder, quick, None)
-        assert found.settings == {"quick": quick, "first random run": begun[-1][1]}
+        study = stability_study.run(folder, quick, None)
+        assert study.settings == {"quick": quick, "first random run": begun[-1][1]}
+
     assert begun == [(True, 100), (True, 100), (False, 120), (False, 120)]
 
 

@@ -54,8 +54,7 @@ def cases() -> list[KnownCase]:
 
 
 def natural_period(scene: Scene, phi_dot0: float = 0.0) -> float:
-    """Return the time scale of a motion [s]: a small swing or a turn, or else a fall through the
-    radius."""
+    """Return the time scale of a motion [s]: that of a swing, a turn, or a fall by a radius."""
     try:
         frequency = scene.frequency()
     except NoEquilibriumError:

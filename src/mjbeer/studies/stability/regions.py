@@ -96,8 +96,10 @@ class RandomPicker:
 
 @dataclass(frozen=True)
 class Parts:
-    """The parts of a scene, in ratios: of a mass to that of the load, of an offset to the radius,
-    and of an inertia to m a^2 of its own mass m."""
+    """The parts of a scene, in ratios.
+
+    They are those of a mass to that of the load, of an offset to the radius, and of an inertia to
+    m a^2 of its own mass m."""
 
     radius: Quantity
     """[m]"""

@@ -1,5 +1,4 @@
-"""Maps of timestep and stiffness or damping: how short runs of stiff models end, measured and by
-linear theory.
+"""Maps of timestep and stiffness: how runs of stiff models end, measured and by linear theory.
 
 A can with frozen beer on level ground is the stiffer, the harder its constraint, or the stronger
 gravity. Beer that slides in a can of sheet metal is the stiffer, the stronger it is damped. Both

@@ -1,5 +1,4 @@
-"""The stability study: maps with the borders of linear theory, and a search for runs that are wrong
-and silent.
+"""The stability study: maps with the borders of linear theory, and a search for silent runs.
 
 The search makes known cases and random ones, and all come before the same judge.
 """
@@ -52,8 +51,7 @@ KNOWN = "cases"
 RANDOM = "search"
 """The group of a study with random runs."""
 OUTSIDE = "outside the domain"
-"""The kind of random trials whose scene, start or timestep the domain refuses: they have no model.
-"""
+"""The kind of random trials that the domain refuses, so that they have no model."""
 SIZE = 4 * len(REGIONS)
 """Number of random runs in a batch, which takes some seconds."""
 RUNS = 3000
@@ -74,14 +72,14 @@ CONFIDENCE = 0.95
 FIRST = "first random run"
 """The setting of a study that has the number of its first random run."""
 _SEEDS = 10**9
-"""Number of random runs among which a study draws its first one: development has seen few of them.
-"""
+"""Number of random runs among which a study draws its first; development has seen few."""
 _READ = """
 A run is **right** if it is trusted, and phi and u/a stay within 0.01 rad of theory (relative beyond
 1 rad), and within its tolerance if it has one. It is **refused** if it ends in an error that states
 the reason, also if its scene is outside the domain, and **doubted** if it carries a warning, right
-or wrong. It is **silent** if it is trusted and wrong: there must be none. Two theories that share no
-code judge a motion without damping; damped ones, liquids and attached cans have exact theory alone.
+or wrong. It is **silent** if it is trusted and wrong: there must be none. Two theories that share
+no code judge a motion without damping; damped ones, liquids and attached cans have exact theory
+alone.
 """
 """How to read the tables of the search."""
 

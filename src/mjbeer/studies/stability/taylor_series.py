@@ -1,5 +1,4 @@
-"""A second exact motion, from the Lagrangian in u and phi by Taylor series; it shares no code with
-`mjbeer.theory`.
+"""A second exact motion, by Taylor series, which shares no code with `mjbeer.theory`.
 
 A load at the angle phi is at s = u - b sin(phi) along the incline and at -b cos(phi) across it.
 With M = m + m_can + I_can/a^2, and g_s and g_c for gravity along and across the incline,
@@ -243,8 +242,7 @@ def _move(phi, time):
 
 @njit(cache=True)
 def _add(high, low, more):
-    """Return the sum of a pair of doubles and a double, as a pair whose second double is the
-    rounding of the first."""
+    """Return the sum of a pair of doubles and a double, as a pair: the sum and its rounding."""
     total = high + more
     part = total - high
     rounding = (high - (total - part)) + (more - part) + low

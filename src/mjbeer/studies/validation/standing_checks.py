@@ -29,8 +29,7 @@ FORCE = 0
 MOMENT = 2
 """Places of force and moment among the reactions."""
 _GAIN = 0.1
-"""Largest energy that a thrown can may gain over that which it had: a rigid can gains 0.05 at 5 ms.
-"""
+"""Largest share of its energy that a thrown can may gain: a rigid can gains 0.05 at 5 ms."""
 
 
 def checks() -> Iterator[Check]:
@@ -203,8 +202,7 @@ def _stiffness(model: mujoco.MjModel, data: mujoco.MjData, moving: Sequence[int]
 
 @cache
 def reaction_errors(can: Standing) -> np.ndarray:
-    """Return the relative errors of force, coupling and moment at each of `SHARES`, shape (3,
-    shares)."""
+    """Return the relative errors of force, coupling and moment, shape (3, shares)."""
     omegas = np.array(SHARES) * can.frequencies(1)[0]
     simulated = np.array([response(can, float(omega)) for omega in omegas]).T
     return simulated / np.array(can.reaction(omegas)) - 1

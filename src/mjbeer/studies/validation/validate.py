@@ -93,8 +93,7 @@ def validate(console: Console | None) -> Validation:
 
 
 def audit(results: list[Result]) -> Table:
-    """Return the table of the audit, with the verdicts, the witnesses, and what dominates each
-    error."""
+    """Return the table of the audit: verdicts, witnesses, and what dominates each error."""
     lines = []
     for result in results:
         printed = result.values.get("printed")
