@@ -54,8 +54,8 @@ def test_what_cannot_be_written_is_known_before_the_work(
 ) -> None:
     work = [
         "report.page.validate",
-        "studies.benchmark.timing.conduct",
-        "studies.stability.stability_study.conduct",
+        "studies.benchmark.timing.run",
+        "studies.stability.stability_study.run",
     ]
     work.append(
         "drawing.video._mediapy" if words == "render frozen" else "cli.motions.trajectory_of"
@@ -82,8 +82,8 @@ def test_a_folder_of_others_is_refused_before_the_work(
 ) -> None:
     for work in (
         "report.page.write",
-        "studies.benchmark.timing.conduct",
-        "studies.stability.stability_study.conduct",
+        "studies.benchmark.timing.run",
+        "studies.stability.stability_study.run",
     ):
         monkeypatch.setattr(f"mjbeer.{work}", lambda *_: pytest.fail("the work was begun"))
     monkeypatch.setattr("mjbeer.paper.stories.write", lambda *_: pytest.fail("the work was begun"))
@@ -115,9 +115,9 @@ def test_old_results_stay_if_a_command_is_interrupted_at_its_end(
     stubs.draw(monkeypatch)
     study = Study("mjbeer stability", {"quick": True}, {})
     monkeypatch.setattr(
-        "mjbeer.studies.benchmark.timing.conduct", lambda *_: Benchmark.load(SHIPPED)
+        "mjbeer.studies.benchmark.timing.run", lambda *_: Benchmark.load(SHIPPED)
     )
-    monkeypatch.setattr("mjbeer.studies.stability.stability_study.conduct", lambda *_: study)
+    monkeypatch.setattr("mjbeer.studies.stability.stability_study.run", lambda *_: study)
     monkeypatch.setattr("mjbeer.studies.stability.stability_maps.figures", lambda _: {})
     words = [command, "--output", str(tmp_path)]
     assert main(words) == 0

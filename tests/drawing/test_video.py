@@ -3,6 +3,7 @@
 import os
 import pathlib
 import re
+import signal
 import subprocess
 from collections.abc import Iterator
 from functools import partial
@@ -15,9 +16,10 @@ from rich.console import Console
 from mjbeer import exact, frozen
 from mjbeer.drawing import film, opengl, video
 from mjbeer.drawing.film import MotionFilm
-from mjbeer.drawing.video import FilmJob, produce
+from mjbeer.drawing.video import FilmJob
 from mjbeer.exceptions import OutputError, ParameterError, RenderingError
-from tests.support.processes import run
+from mjbeer.output.jobs import Job, run_jobs
+from tests.support.processes import hear, interrupt, run, start
 
 # The pipe to an ffmpeg that failed is left open by mediapy until its object goes.
 pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore:unclosed file:ResourceWarning")]
@@ -41,6 +43,19 @@ def decode(path: pathlib.Path) -> tuple[str, np.ndarray]:
     ]
     done = subprocess.run(command, capture_output=True, check=True)
     return done.stderr.decode(), np.frombuffer(done.stdout, np.uint8).reshape(-1, 180, 320, 3)
+
+
+ENDLESS_VIDEO = """
+import pathlib, sys
+import numpy as np
+from mjbeer.drawing import video
+def pictures(*_):
+    while True:
+        print("writing", flush=True)
+        yield np.zeros((720, 1280, 3), np.uint8)  # more than a pipe holds: its writing hangs
+video._pictures = lambda *_: pictures()
+video.write(None, pathlib.Path(sys.argv[1]), 1280, 720, 30)
+"""
 
 
 def blank(frames: int, error: BaseException | None = None) -> Iterator[np.ndarray]:
@@ -151,6 +166,24 @@ def test_an_interrupted_video_leaves_what_was_there(
     assert (tmp_path / "can.mp4").read_text() == "an older video"
 
 
+@pytest.mark.slow
+def test_a_hanging_ffmpeg_ends_with_the_first_interruption(tmp_path: pathlib.Path) -> None:
+    """It reads nothing, and ignores the signal itself; the streams end when it has ended, too."""
+    program = tmp_path / "ffmpeg"
+    program.write_text("#!/bin/sh\ntrap '' INT TERM\nexec sleep 3600\n")
+    program.chmod(0o755)
+    environment = os.environ | {"IMAGEIO_FFMPEG_EXE": str(program)}
+    with start([str(tmp_path / "can.mp4")], ENDLESS_VIDEO, environment) as process:
+        hear(process, "writing")
+
+        status, error = interrupt(process, signal.SIGINT)
+
+    assert status != 0
+    assert error.count("Traceback") == 1
+    assert error.strip().endswith("KeyboardInterrupt")
+    assert os.listdir(tmp_path) == ["ffmpeg"]
+
+
 @pytest.mark.draws
 @pytest.mark.costly
 def test_films_are_made_in_other_processes_or_one_error_is_told(
@@ -161,15 +194,16 @@ def test_films_are_made_in_other_processes_or_one_error_is_told(
     A process that is ended may leave one of its own.
     """
     (tmp_path / ".a-mine").write_text("mine")
-    orders = [FilmJob(FILM, tmp_path / f"{name}.mp4", 160, 90, 10) for name in "ab"]
-    stills = produce(orders, Console(quiet=True))
+    films = [FilmJob(FILM, tmp_path / f"{name}.mp4", 160, 90, 10) for name in "ab"]
+    jobs = [Job(film.path.name, film.write) for film in films]
+    stills = run_jobs(jobs, Console(quiet=True))
     assert sorted(os.listdir(tmp_path)) == [".a-mine", "a.mp4", "b.mp4"]
     assert (tmp_path / "a.mp4").read_bytes() == (tmp_path / "b.mp4").read_bytes()
     assert stills[0] == stills[1]
     assert stills[0][8:12] == b"WEBP"
     monkeypatch.setenv("IMAGEIO_FFMPEG_EXE", str(tmp_path / "nowhere"))
     with pytest.raises(RenderingError, match="nowhere' is not found"):
-        produce(orders, Console(quiet=True))
+        run_jobs(jobs, Console(quiet=True))
     assert {".a-mine", "a.mp4", "b.mp4"} <= {*os.listdir(tmp_path)}
 
 

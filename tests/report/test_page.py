@@ -12,11 +12,11 @@ import shlex
 import pytest
 
 from mjbeer import paper
+from mjbeer.checks.check import Result
 from mjbeer.cli.app import main, parse
 from mjbeer.drawing import opengl
 from mjbeer.drawing.film import MotionFilm
 from mjbeer.output import folders
-from mjbeer.paper.checks import Result
 from mjbeer.paper.claim import CORRECTED, Bound, Claim, Witness
 from mjbeer.report import films, page
 from mjbeer.report.films import FILMS

@@ -116,7 +116,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
             cast("Any", warnings).showwarning = _show_warning
             return COMMANDS[given.command](given) or 0
     except (MjbeerError, OSError) as error:  # OSError: a limit, such as too many processes
-        say(f"mjbeer: {error}", "red")
+        # A note names the job that failed.
+        words = [str(error), *getattr(error, "__notes__", ())]
+        say(f"mjbeer: {', '.join(words)}", "red")
         return 2
     except KeyboardInterrupt as error:
         say("mjbeer: interrupted; what was written is whole", "red")

@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from mjbeer.checks.as_json import json_values, to_json
 from mjbeer.cli.arguments import angle, scene, start, steps
 from mjbeer.drawing.words import damping_in_words
 from mjbeer.exceptions import LiquidWarning, MjbeerError, ParameterError, RenderingError
 from mjbeer.model.setting import FRICTION, supported
 from mjbeer.output import files, terminal
 from mjbeer.output.terminal import say
-from mjbeer.paper.checks import json_values, to_json
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import csv
 

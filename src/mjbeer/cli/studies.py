@@ -98,7 +98,7 @@ def benchmark(given: Namespace) -> None:
 
     names = [require.choice("scene", name, CASES) for name in given.scenes or CASES]
     with owned(given.output, "mjbeer benchmark"), replaced(given.output) as folder:
-        study = timing.conduct(names, given.quick, STDERR)
+        study = timing.run(names, given.quick, STDERR)
         benchmark_tables.write(study, folder)
     show(*benchmark_tables.tables(study))
     say(f"the study is in {given.output / 'summary.md'}")
@@ -109,7 +109,7 @@ def stability(given: Namespace) -> int:
     from mjbeer.studies.stability import stability_study as stability
 
     with owned(given.output, stability.COMMAND):
-        study = stability.conduct(given.output, given.quick, STDERR)
+        study = stability.run(given.output, given.quick, STDERR)
         with replaced(given.output) as folder:
             stability.write(study, folder)
         (given.output / stability.UNFINISHED).unlink(missing_ok=True)

@@ -1,4 +1,4 @@
-"""Films as files (MP4, by mediapy), whole or not at all; and many at once, with plots."""
+"""Films as files: MP4 by mediapy, whole or not at all; in a notebook; and as jobs, with plots."""
 
 import contextlib
 import errno
@@ -6,15 +6,11 @@ import io
 import os
 import pathlib
 import re
-import warnings
-from collections.abc import Callable, Generator, Sequence
-from concurrent.futures import as_completed
-from concurrent.futures.process import BrokenProcessPool
+from collections.abc import Callable, Generator
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import rich.console
 from PIL import Image
 
 from mjbeer import require
@@ -118,14 +114,31 @@ def write(
             crf=_RATE_FACTOR,
             ffmpeg_args=_FFMPEG_OPTIONS,
         )
+        writer.__enter__()
         try:
-            with writer:
+            try:
                 for picture in pictures:
                     begin(f"drawing {path.name}")
                     writer.add_image(picture)
-        except BrokenPipeError:
-            writer.close()  # which now raises what ffmpeg said
+            except BrokenPipeError:
+                writer.close()  # which now raises what ffmpeg said
+                raise
+            writer.close()
+        except BaseException:
+            _kill_ffmpeg(writer)
             raise
+
+
+def _kill_ffmpeg(writer: Any) -> None:
+    """End the ffmpeg of a `mediapy.VideoWriter`: to close the writer is to wait for it, and it may hang."""
+    process = writer._proc
+    if process is None:
+        return
+    process.kill()
+    process.wait()
+    with contextlib.suppress(OSError):  # the last picture has no reader now
+        process.stdin.close()
+    process.stderr.close()
 
 
 def _pictures(plan: RenderPlan, width: int, height: int, fps: float) -> Generator[np.ndarray]:
@@ -212,35 +225,3 @@ class PlotJob:
         picture = Picture(self.path.name) if self.in_memory else None
         self.draw(picture or self.path)
         return picture
-
-
-def produce(orders: Sequence[Any], console: rich.console.Console) -> list[Any]:
-    """Write what is ordered, with a progress bar, and return what the orders' `write` returns; begin with the first.
-
-    An order can be pickled, and has a `path`: its file, which it writes whole or not at all, or one
-    of its name. A process that is ended while it writes leaves a hidden file beside it: the folder
-    must be one that goes then.
-
-    Raises:
-      RenderingError: if ffmpeg or OpenGL does not work, or a process dies; the message says
-        what to do.
-      OutputError: if a file cannot be written.
-    """
-    try:
-        with (
-            terminal.progress_bar(console, len(orders)) as begin,
-            files.pool(len(orders)) as executor,
-        ):
-            futures = {executor.submit(_done, order): order for order in orders}
-            for future in as_completed(futures):
-                future.result()
-                begin(f"made {futures[future].path.name}")
-            return [future.result() for future in futures]
-    except BrokenProcessPool as error:
-        raise RenderingError("a process that drew or checked died; is memory short?") from error
-
-
-def _done(order: Any) -> Any:
-    """Write what is ordered, without mjbeer's warnings: reports show on purpose what cannot be trusted."""
-    with warnings.catch_warnings(action="ignore", category=UserWarning):
-        return order.write()

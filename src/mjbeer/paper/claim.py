@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 import numpy as np
 
-from mjbeer.paper.checks import Result
+from mjbeer.checks.check import Result
 
 if TYPE_CHECKING:
     from mjbeer.theory.scene import Scene

@@ -8,13 +8,14 @@ from typing import NamedTuple
 from matplotlib.axes import Axes
 from rich.console import Console
 
-from mjbeer.drawing import opengl, video
+from mjbeer.drawing import opengl
 from mjbeer.drawing.film import Film, MotionFilm
 from mjbeer.drawing.race import Race, Runner
 from mjbeer.drawing.style import FilmStyle
 from mjbeer.drawing.video import FilmJob, PlotJob
 from mjbeer.drawing.words import in_degrees, in_words
-from mjbeer.output import files
+from mjbeer.output import files, jobs
+from mjbeer.output.jobs import Job
 from mjbeer.output.plots import chart
 from mjbeer.paper import story_plots
 from mjbeer.paper.story_plots import SWING
@@ -230,7 +231,8 @@ def write(folder: pathlib.Path, filmed: bool, console: Console) -> str:
         missing = opengl.missing_films_message([order.path.name for order in orders])
     files.write(folder / "letters.svg", letters())
     plots = [PlotJob(story.plot, folder / story.name) for story in STORIES]
-    video.produce(plots if missing else [*orders, *plots], console)
+    drawn = plots if missing else [*orders, *plots]
+    jobs.run_jobs([Job(order.path.name, order.write) for order in drawn], console)
     lines = ["# The paper's stories", "", "![The letters of the formulas](letters.svg)", ""]
     if missing:
         lines += [f"Films: {missing}", ""]

@@ -12,7 +12,6 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
-from types import SimpleNamespace
 from typing import NamedTuple
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
@@ -21,9 +20,10 @@ from markupsafe import Markup, escape
 from rich.console import Console
 
 from mjbeer import paper
-from mjbeer.drawing import opengl, video
+from mjbeer.drawing import opengl
 from mjbeer.drawing.video import PlotJob
-from mjbeer.output import files
+from mjbeer.output import files, jobs
+from mjbeer.output.jobs import Job
 from mjbeer.output.plots import Picture
 from mjbeer.paper import stories
 from mjbeer.report import films
@@ -79,8 +79,9 @@ def write(folder: pathlib.Path, quick: bool, console: Console) -> tuple[Validati
             not_drawn = opengl.missing_films_message([job.path.stem for job in filmed])
             filmed = []
         # The checks take longest, and compile what the films run; plots are quick.
-        checks = SimpleNamespace(path=folder / "checks", write=partial(validate, None))
-        validation, *made = video.produce([checks, *filmed, *plot_jobs(folder)], console)
+        checks = Job("the checks", partial(validate, None))
+        drawn = [Job(job.path.name, job.write) for job in (*filmed, *plot_jobs(folder))]
+        validation, *made = jobs.run_jobs([checks, *drawn], console)
         stills = made[: len(filmed)]
         plots = made[len(filmed) :]
         shown = {
@@ -125,7 +126,7 @@ def page(
     environment.filters |= {"mathml": mathml, "share": share, "marked": _marked, "data": _data}
     benchmark = Benchmark.load(SHIPPED)
     maps = stability_maps.load()
-    runs, border = stability_maps.summary(maps["maps"])
+    runs, border = stability_maps.summary(maps.maps)
     claims = paper.claims()
     misprinted = {(claim.equation, claim.quantity): claim for claim in claims if claim.misprint}
     misprints = [
