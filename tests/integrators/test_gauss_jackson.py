@@ -246,8 +246,8 @@ def test_damping_is_refused(scene: Scene) -> None:
 
 
 def test_a_tolerance_falls_back_on_dop853(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where runs stay too far apart."""
-    monkeypatch.setattr(methods, "_FINER_RUNS", 1)
+    """Where runs stay too far apart, here because each is coarser than the one before."""
+    monkeypatch.setattr(methods, "_FINER", 0.7)
     run = simulate(frozen(), 2.0, 1.0, tolerance=1e-8)
     assert run.integrator == "DOP853"
     assert np.abs(run.phi - exact(run.scene, run.time, 1.0).phi).max() < 1e-8

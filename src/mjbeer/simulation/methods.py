@@ -21,12 +21,14 @@ if TYPE_CHECKING:
     from mjbeer.integrators.gauss_jackson import SwingLaw
 
 _GOLDEN_SECTION = (math.sqrt(5) - 1) / 2
-"""The greater part of a timestep in an uneven run. None of its multiples is near a whole number, so that no rate of
+"""The longer part of a timestep in an uneven run, as a share of it. No multiple of it is near a whole number, so that no
 rotation has the same phase at the ends of both parts."""
 _FINER = 1.4
 """Timestep of a run of Gauss-Jackson divided by that of the next, which has 1.4^13 = 79 times less error."""
 _FINER_RUNS = 5
 """Largest number of runs of Gauss-Jackson: 1.4^(4 x 13) is 4e7 times less error in the last than in the first."""
+_TIME_PRECISION = 1e-3
+"""Precision of the duration of a step of Gauss-Jackson divided by the tolerance: it shall not count."""
 _FIRST_LOCAL = 1 / 200
 """Local tolerance of DOP853's first run divided by the tolerance: the errors of its steps add up."""
 _COARSEST_LOCAL = 1e-7
@@ -36,8 +38,8 @@ _FINER_LOCAL = 64.0
 _SMALLEST_LOCAL = 1e-16
 """Local tolerance below which the error of a step is rounding."""
 _SHORTER = 1.25
-"""Longest step of a run of DOP853 divided by that of the next, at least. A rotation is so even that steps of any length
-keep a local tolerance, and two runs with the same steps would have the same error."""
+"""Longest step of a run of DOP853 divided by that of the next, at least. A rotation may be so even that steps of any
+length keep a local tolerance, and two runs with the same steps would have the same error."""
 
 
 def model_numbers(scene: Scene, setting: Setting, uneven: bool = False) -> ModelNumbers:
@@ -104,14 +106,15 @@ def suits_gauss_jackson(scene: Scene, model: mujoco.MjModel) -> bool:
 def finer_gauss_jackson(
     stepped: SteppedModel, start: np.ndarray, duration: float, tolerance: float
 ) -> Iterator[Method]:
-    """Yield runs of Gauss-Jackson with shorter and shorter timesteps."""
+    """Yield Gauss-Jackson with shorter and shorter timesteps, for an error of about `tolerance` [rad]."""
     from mjbeer.integrators.gauss_jackson import GaussJackson, first_timestep, sundman_time
 
     law = swing_law(stepped.scene)
     phi0 = float(start[stepped.model.nq - 1])
     phi_dot0 = float(start[-1])
     first = first_timestep(law, phi0, phi_dot0, duration, tolerance)
-    time = sundman_time(law, law.inertia(phi0), 1e-3 * min(tolerance, 1.0), first.largest_turn)
+    precision = _TIME_PRECISION * min(tolerance, 1.0)
+    time = sundman_time(law, law.inertia(phi0), precision, first.largest_turn)
     timestep = first.timestep
     for _ in range(_FINER_RUNS):
         yield GaussJackson(stepped.dynamics, timestep, time)
@@ -119,14 +122,15 @@ def finer_gauss_jackson(
 
 
 def finer_dop853(stepped: SteppedModel, tolerance: float, scale: np.ndarray) -> Iterator[Method]:
-    """Yield runs of DOP853 with smaller and smaller local tolerances, down to rounding.
+    """Yield DOP853 with smaller and smaller local tolerances, down to rounding.
 
-    Each must be run before the next one is asked for: its longest step bounds that of the next.
+    Run each method before you ask for the next one, whose steps are shorter than the longest that it has taken.
     """
     from mjbeer.integrators.dop853 import DOP853
 
-    local = min(_FIRST_LOCAL * tolerance, _COARSEST_LOCAL)
-    local = max(local, _FINER_LOCAL * _SMALLEST_LOCAL)
+    coarsest = _COARSEST_LOCAL
+    finest = _FINER_LOCAL * _SMALLEST_LOCAL  # so that a finer run can follow
+    local = max(finest, min(coarsest, _FIRST_LOCAL * tolerance))
     longest_step = math.inf
     while True:
         method = DOP853(stepped.dynamics, local_tolerance=local, scale=scale, longest_step=longest_step)

@@ -17,18 +17,15 @@ from mjbeer.theory.oscillator import Oscillator
 from mjbeer.theory.scene import Scene, relaxation_rate
 
 NUDGE = 4e-14
-"""Distance of the start of a nudged run, in sizes of the components of the state: a hundred times their rounding.
-
-Where J has a narrow minimum, it is the small difference of large numbers, and rounded accordingly: 1 + narrowness times
-as much, over a share of the angle that is 1/sqrt(1 + narrowness). The nudge is larger by the product of the two.
-"""
+"""Distance of the start of a nudged run, in sizes of the components of the state: a hundred times their rounding."""
 SMALLEST = 1e-12
 """Smallest tolerance [rad]: below it the rounding of angles decides."""
 EVALUATIONS = 2_000_000
 """Largest number of evaluations of the accelerations in all runs of a method, which take some seconds."""
-_STABLE = 6.4 / 12
-"""Longest step of DOP853 divided by the time in which damping brings can and load together, for each of its
-evaluations."""
+_STABLE_STEP = 6.4
+"""Longest step with which DOP853 is stable, divided by the time in which damping brings can and load together."""
+_STEP_EVALUATIONS = 12
+"""Evaluations in a step of DOP853."""
 
 
 def solve(
@@ -59,15 +56,15 @@ def solve(
             setting.tolerance,
             f"doubles near an angle as large as phi0 have errors of up to {rounding:.2g} rad; start fewer turns away",
         )
-    return _solve_to_tolerance(stepped, start, times, setting.tolerance - rounding, friction)
+    return _try_methods(stepped, start, times, setting.tolerance - rounding, friction)
 
 
-def _solve_to_tolerance(
+def _try_methods(
     stepped: SteppedModel, start: np.ndarray, times: np.ndarray, tolerance: float, friction: float
 ) -> Solution:
     """Return the motion with an error of phi and u/a below `tolerance` [rad].
 
-    Gauss-Jackson is tried first, if the motion is one for it, and then DOP853.
+    Gauss-Jackson is tried first, if the motion is one for it. Otherwise, or if it fails, DOP853 is.
     """
     from mjbeer.simulation.smooth_recorder import SmoothRecorder  # numba is slow to import
 
@@ -76,9 +73,14 @@ def _solve_to_tolerance(
     dynamics = stepped.dynamics
     _refuse_stiff(scene, times[-1], tolerance)
     scale = state_sizes(model, scene)
-    nudge = NUDGE * math.sqrt(1 + _narrowness(scene.oscillator))
-    nudged = start + nudge * scale * _along_energy(dynamics.derivative(start))
-    problem = Problem(start, nudged, times, tolerance, angle_sums(model, scene))
+    signs = _along_energy(dynamics.derivative(start))
+    problem = Problem(
+        start=start,
+        nudged_start=start + _nudge(scene.oscillator) * scale * signs,
+        times=times,
+        tolerance=tolerance,
+        angles=angle_sums(model, scene),
+    )
     if suits_gauss_jackson(scene, model):
         dynamics.most_evaluations = dynamics.evaluations + EVALUATIONS
         methods = finer_gauss_jackson(stepped, start, times[-1], tolerance / SAFETY)
@@ -86,12 +88,20 @@ def _solve_to_tolerance(
             return solve_to_tolerance(methods, problem, lambda: SmoothRecorder(model, scene, friction))
     dynamics.most_evaluations = dynamics.evaluations + EVALUATIONS
     methods = finer_dop853(stepped, tolerance, scale)
-    return solve_to_tolerance(methods, problem, lambda: Recorder(model, scene, friction, look_within_steps=True))
+    return solve_to_tolerance(
+        methods, problem, lambda: Recorder(model, scene, friction, look_within_steps=True)
+    )
 
 
-def _narrowness(swing: Oscillator) -> float:
-    """Return how narrow the minimum of J is: J = base (1 + narrowness phi^2) about phi = 0."""
-    return max(swing.coupling, swing.chord / 4) / swing.base
+def _nudge(swing: Oscillator) -> float:
+    """Return how far a nudged run starts aside, in sizes of the components of the state.
+
+    It is more than `NUDGE` where J has a narrow minimum, J = base (1 + narrowness phi^2) about phi = 0. There MuJoCo
+    computes J as a small difference of large numbers, and its rounding is 1 + narrowness times as large. But the load
+    is there for a share of the way only, 1/sqrt(1 + narrowness). So the nudge grows with sqrt(1 + narrowness).
+    """
+    narrowness = max(swing.coupling, swing.chord / 4) / swing.base
+    return NUDGE * math.sqrt(1 + narrowness)
 
 
 def _along_energy(rates: np.ndarray) -> np.ndarray:
@@ -110,8 +120,9 @@ def _refuse_stiff(scene: Scene, duration: float, tolerance: float) -> None:
         return
     # The weight of can and load, pulling at the rim, drives them apart at most at this rate.
     slip = min(scene.damping_law.rate_at(scene.mass * scene.gravity * scene.can.radius), LARGEST)
-    rate = float(relaxation_rate(scene, math.pi, slip))  # where J_f/J is largest
-    if rate * duration > _STABLE * EVALUATIONS:
+    rate = float(relaxation_rate(scene, math.pi, slip))  # at pi, where it is largest
+    most_steps = EVALUATIONS / _STEP_EVALUATIONS
+    if rate * duration > _STABLE_STEP * most_steps:
         raise not_reached(
             tolerance,
             f"damping brings can and load together {rate:.2g} times a second, and steps as short as that would be too "

@@ -75,6 +75,14 @@ class _Totals(NamedTuple):
     velocity: np.ndarray  # of the same [m/s]
 
 
+class _Work(NamedTuple):
+    """What a run carries on from block to block, and space to work in."""
+
+    history: History  # begins with the last accelerations before a block, and has room for those of the block
+    totals: _Totals
+    coefficients: np.ndarray  # space for those of a `StepCurve`
+
+
 class _Place(NamedTuple):
     """Where a run is between two blocks."""
 
@@ -120,20 +128,15 @@ class GaussJackson:
         samples.states[:at_start] = start
         dynamics.data.qpos[:] = 0.0
         dynamics.data.qvel[:] = 0.0
-        history = History(np.zeros(COUNT + BLOCK), np.zeros(COUNT + BLOCK))
-        coefficients = np.empty(COUNT + 2)
+        work = _Work(
+            history=History(np.zeros(COUNT + BLOCK), np.zeros(COUNT + BLOCK)),
+            totals=_totals_at(start, sundman.arm),
+            coefficients=np.empty(COUNT + 2),
+        )
         dynamics.run_blocks(
             self.name,
             _advance,
-            (
-                dynamics.kernel_view,
-                sundman,
-                self._timestep,
-                history,
-                _totals_at(start, sundman.arm),
-                coefficients,
-                samples,
-            ),
+            (dynamics.kernel_view, sundman, self._timestep, work, samples),
             _Place(is_first=True, back=MIDDLE, sample=at_start, node=_node_at(start, sundman)),
             room_for_ends(start, BLOCK + COUNT if observer else 0),
             observer,
@@ -161,39 +164,41 @@ def _totals_at(start: np.ndarray, arm: float) -> _Totals:
 
 
 @kernel
-def _advance(dynamics, sundman, timestep, history, totals, coefficients, samples, ends, place):
+def _advance(dynamics, sundman, timestep, work, samples, ends, place):
     """Take up to a block of steps, and return the `Block`.
 
-    `dynamics` is a `ForwardDynamics`. `history` begins with the last accelerations before the block, and has room for
-    those of the block. `totals` are moved on. `coefficients` is space to work in. The rows of `samples` whose times are
-    passed are filled in, and the ends of steps are written to `ends`, if that has room.
+    `dynamics` is a `ForwardDynamics`. The rows of `samples` whose times are passed are filled in, and the ends of steps
+    are written to `ends`, if that has room.
     """
     optimize_for_size()
+    history = work.history
+    totals = work.totals
     back = place.back
     sample = place.sample
     node = place.node
     status = MORE
     evaluations = 0
     row = 0
-    end = history.phi_second.size - BLOCK  # `COUNT`: the accelerations before this index are there
+    end = history.phi_second.size - BLOCK  # the accelerations before this index are there
     if place.is_first:
+        row = 1  # the row before has the start
         begin = find_first_steps(dynamics, sundman, node, timestep, history)
+        evaluations = begin.evaluations
         totals.first_sum[0] = begin.first_sum
         totals.second_sum[0] = begin.second_sum
-        evaluations = begin.evaluations
-        row = 1
         if not begin.found:
             status = STEP_TOO_LONG
         elif sample == samples.times.size:
             status = DONE
     while status == MORE and end < history.phi_second.size:
-        if back > LAG:  # the first steps are there already
+        # Each turn reads off one state more. The first steps give accelerations further ahead than this needs.
+        if back > LAG:
             back -= 1
         else:
-            _take_step(dynamics, sundman, timestep, history, totals, end)
+            _take_step(dynamics, sundman, timestep, work, end)
             end += 1
             evaluations += 1
-        curve = StepCurve(coefficients, totals.first_sum[0], totals.second_sum[0], timestep, back + 1)
+        curve = StepCurve(work.coefficients, totals.first_sum[0], totals.second_sum[0], timestep, back + 1)
         after = end_node(sundman, curve, history.phi_second, end)
         if not abs(after.phi) < LARGEST:  # it may also be NaN
             status = NOT_FINITE
@@ -202,9 +207,10 @@ def _advance(dynamics, sundman, timestep, history, totals, coefficients, samples
             status = STEP_TOO_LONG
             break
         duration = whole_duration(sundman, curve, history.phi_second, end)
+        end_time = totals.time[0] + duration
         steady = _mean_steady(history, end - 1 - back, node, after)
-        step = WholeStep(node, after, duration, steady)
-        if samples.times[sample] <= _latest(totals, step):
+        step = WholeStep(node, after, duration, end_time * (1 + ON_TIME), steady)
+        if samples.times[sample] <= step.end_time:
             fit(curve, history.phi_second, end)
             sample = _write_samples(sundman, curve, step, totals, samples, sample)
             if sample == samples.times.size:
@@ -214,22 +220,24 @@ def _advance(dynamics, sundman, timestep, history, totals, coefficients, samples
                 ends.times[row] = samples.times[sample - 1]
                 write(samples.states[sample - 1], ends.states[row])
             else:
-                ends.times[row] = totals.time[0] + duration
+                ends.times[row] = end_time
                 _write(sundman, after, step, totals, duration, ends.states, row)
             row += 1
         _add(totals.time, duration)
         _add(totals.position, duration * (totals.velocity[0] + duration * steady / 2))
         _add(totals.velocity, duration * steady)
         node = after
-    for k in range(COUNT):
+    for k in range(COUNT):  # the next block begins with the last accelerations of this one
         history.phi_second[k] = history.phi_second[end - COUNT + k]
         history.steady[k] = history.steady[end - COUNT + k]
     return Block(status, totals.time[0], evaluations, row, _Place(False, back, sample, node))
 
 
 @inlined
-def _take_step(dynamics, sundman, timestep, history, totals, end):
+def _take_step(dynamics, sundman, timestep, work, end):
     """Predict, evaluate and correct the next step: write its accelerations at index `end`, and add them up."""
+    history = work.history
+    totals = work.totals
     square = timestep * timestep
     first_sum = totals.first_sum[0]
     second_sum = totals.second_sum[0]
@@ -251,24 +259,18 @@ def _take_step(dynamics, sundman, timestep, history, totals, end):
 def _mean_steady(history, index, before, after):
     """Return the mean acceleration of the slide less arm sin(phi) in a step [m/s^2].
 
-    The step ends at an `index` of the history, and its nodes are `before` and `after`.
-    It changes by rounding alone, which is largest where the load is fastest, and there dt/ds is least.
+    The step ends at an `index` of the history, and its nodes are `before` and `after`. The acceleration would be constant
+    but for rounding. Rounding is largest where the load is fastest, and there dt/ds, its weight in the mean, is least.
     """
     weighted_sum = before.dt_ds * history.steady[index - 1] + after.dt_ds * history.steady[index]
     return weighted_sum / (before.dt_ds + after.dt_ds)
-
-
-@inlined
-def _latest(totals, step):
-    """Return the time [s] up to which samples belong to a step: its end, but for rounding."""
-    return (totals.time[0] + step.duration) * (1 + ON_TIME)
 
 
 @compiled
 def _write_samples(sundman, curve, step, totals, samples, sample):
     """Write the samples within a step, from an index `sample` on, and return the index of the next one."""
     optimize_for_size()
-    while sample < samples.times.size and samples.times[sample] <= _latest(totals, step):
+    while sample < samples.times.size and samples.times[sample] <= step.end_time:
         since = samples.times[sample] - totals.time[0]
         node = find(sundman, curve, step, since)
         _write(sundman, node, step, totals, since, samples.states, sample)
