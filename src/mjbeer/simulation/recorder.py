@@ -15,12 +15,16 @@ from mjbeer.theory.scene import Scene
 class Recorder:
     """Makes the record of a run of a scene's model: an `Observer`.
 
-    It looks at the ends of all steps. Steps of mjbeer's own integrators are so long that forces have to be looked for
-    within them, too.
+    It looks at the ends of all steps. Steps of mjbeer's own integrators are so long that forces
+    have to be looked for within them, too.
     """
 
     def __init__(
-        self, model: mujoco.MjModel, scene: Scene, friction: float = math.inf, look_within_steps: bool = False
+        self,
+        model: mujoco.MjModel,
+        scene: Scene,
+        friction: float = math.inf,
+        look_within_steps: bool = False,
     ) -> None:
         self._model = model
         self._scene = scene
@@ -86,8 +90,9 @@ class _Ends(NamedTuple):
 
 
 _POINTS = 32
-"""Points in a step at which forces are looked for. A step may be half a swing long, in which N varies by its own size;
-between two points its extreme is then a thousandth of that beyond the larger one, (pi/64)^2/2."""
+"""Points in a step at which forces are looked for. A step may be half a swing long, in which N
+varies by its own size; between two points its extreme is then a thousandth of that beyond the
+larger one, (pi/64)^2/2."""
 _SHARES = np.arange(1, _POINTS + 1) / _POINTS
 _POWERS = np.arange(1, 6)
 _CONDITIONS = np.array(
@@ -103,16 +108,19 @@ _CONDITIONS = np.array(
 _COEFFICIENTS = np.linalg.inv(_CONDITIONS)
 _CHANGES = _SHARES[:, np.newaxis] ** _POWERS @ _COEFFICIENTS
 _SLOPES = _POWERS * _SHARES[:, np.newaxis] ** (_POWERS - 1) @ _COEFFICIENTS
-"""What gives the change since the beginning and the slope at the points within a step, from the five conditions."""
+"""What gives the change since the beginning and the slope at the points within a step, from the
+five conditions."""
 
 
 def _interpolate(
     step: np.ndarray, value: np.ndarray, slope: np.ndarray, bend: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the change of a coordinate since the beginning of each step, and its slope, at the points within.
+    """Return the change of a coordinate since the beginning of each step, and its slope, at the
+    points within.
 
-    Given are the lengths of the steps [s], shape (steps, 1), and at their ends the coordinate and its first and second
-    derivatives, shape (steps + 1,). What comes back has the shape (steps, points).
+    Given are the lengths of the steps [s], shape (steps, 1), and at their ends the coordinate and
+    its first and second derivatives, shape (steps + 1,). What comes back has the shape (steps,
+    points).
     """
     length = step[:, 0]
     conditions = np.stack(

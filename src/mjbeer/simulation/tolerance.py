@@ -1,16 +1,18 @@
 """Integration to a tolerance: finer and finer runs, until two of them come close enough.
 
-Every run has two kinds of error. That of its steps falls with their length, by a known power: of two runs the finer one
-has much less of it, and their distance is the error of the coarser one. `SAFETY` times the distance must be within the
-tolerance, although it is the finer run that is returned. Rounding does not fall. A run that starts a little aside
-shows how much the motion amplifies it: beside a separatrix, where a load hardly passes the top, a millionfold.
+Every run has two kinds of error. That of its steps falls with their length, by a known power: of
+two runs the finer one has much less of it, and their distance is the error of the coarser one.
+`SAFETY` times the distance must be within the tolerance, although it is the finer run that is
+returned. Rounding does not fall. A run that starts a little aside shows how much the motion
+amplifies it: beside a separatrix, where a load hardly passes the top, a millionfold.
 
-The first run, the coarsest, starts aside. Mostly the second one comes close enough to it even so: then both kinds of
-error are small enough, and two runs have done. Otherwise a third run, as coarse as the first but with the right start,
-tells the two kinds apart, and finer runs follow if that of the steps is too large.
+The first run, the coarsest, starts aside. Mostly the second one comes close enough to it even so:
+then both kinds of error are small enough, and two runs have done. Otherwise a third run, as coarse
+as the first but with the right start, tells the two kinds apart, and finer runs follow if that of
+the steps is too large.
 
-At order 13 and 8 a factor of 10 in the error costs 1.2 and 1.3 times the steps, so that one factor, generously chosen,
-replaces any finer judgement of whether two runs may agree by accident.
+At order 13 and 8 a factor of 10 in the error costs 1.2 and 1.3 times the steps, so that one factor,
+generously chosen, replaces any finer judgement of whether two runs may agree by accident.
 """
 
 import math
@@ -29,10 +31,12 @@ SAFETY = 10.0
 ROUNDING = 0.3
 """Estimated effect of all rounding divided by that of the nudge."""
 DRIFT = 1.5
-"""Error of phi divided by that which the drift of the swing's energy implies: 0.5 for rotations and small swings. For
-swings of 2.85 rad it is up to 2; there the distance of the runs is the larger estimate."""
+"""Error of phi divided by that which the drift of the swing's energy implies: 0.5 for rotations and
+small swings. For swings of 2.85 rad it is up to 2; there the distance of the runs is the larger
+estimate."""
 MOST_COMPARED = 64
-"""Largest number of samples at which two runs are compared: to read one off takes as long as an evaluation."""
+"""Largest number of samples at which two runs are compared: to read one off takes as long as an
+evaluation."""
 
 
 class Solution(NamedTuple):
@@ -96,7 +100,8 @@ class _FullRun(NamedTuple):
 def solve_to_tolerance(
     methods: Iterable[Method], problem: Problem, make_recorder: Callable[[], RecordingObserver]
 ) -> Solution:
-    """Return the run of the first of these finer and finer `methods` that comes close enough to the one before it.
+    """Return the run of the first of these finer and finer `methods` that comes close enough to the
+    one before it.
 
     There are two methods at least.
 
@@ -138,12 +143,14 @@ def solve_to_tolerance(
         raise not_reached(tolerance, str(failure)) from failure
     raise not_reached(
         tolerance,
-        f"the error of the finest run is estimated at {error:.2g} rad: the motion is not smooth, or rounding decides",
+        f"the error of the finest run is estimated at {error:.2g} rad: "
+        "the motion is not smooth, or rounding decides",
     )
 
 
 def estimate_error(problem: Problem, coarse: np.ndarray, fine: np.ndarray, record: Record) -> float:
-    """Return the error of the finer of two runs [rad]: by their distance, and by what its `record` shows."""
+    """Return the error of the finer of two runs [rad]: by their distance, and by what its `record`
+    shows."""
     distance = largest_distance(problem, coarse, fine)
     return max(SAFETY * distance, DRIFT * record.swing_error, record.axis_error)
 
@@ -156,12 +163,15 @@ def estimate_rounding(problem: Problem, coarse: np.ndarray, nudged: np.ndarray) 
     """
     rounding = ROUNDING * largest_distance(problem, coarse, nudged)
     if rounding > problem.tolerance:
-        raise not_reached(problem.tolerance, f"the rounding of the start grows to {rounding:.2g} rad")
+        raise not_reached(
+            problem.tolerance, f"the rounding of the start grows to {rounding:.2g} rad"
+        )
     return rounding
 
 
 def largest_distance(problem: Problem, coarse: np.ndarray, fine: np.ndarray) -> float:
-    """Return the largest distance of two runs in phi or u/a [rad], relative to the angle turned beyond 1 rad."""
+    """Return the largest distance of two runs in phi or u/a [rad], relative to the angle turned
+    beyond 1 rad."""
     angles = problem.angles
     return largest_angle_error(coarse @ angles, fine @ angles, problem.start @ angles)
 

@@ -1,9 +1,10 @@
 """The first steps of Gauss-Jackson, and MuJoCo's accelerations in Sundman time, in compiled code.
 
-Before it can take a step, a multistep method needs accelerations: those of the six steps before the start, of the start
-itself, and of the six steps after it. They are found by iteration. With any thirteen accelerations the formulas give
-angles and rates at all thirteen steps, for which MuJoCo is asked for better accelerations. The law that phi nearly obeys
-is iterated first, as it costs next to nothing.
+Before it can take a step, a multistep method needs accelerations: those of the six steps before the
+start, of the start itself, and of the six steps after it. They are found by iteration. With any
+thirteen accelerations the formulas give angles and rates at all thirteen steps, for which MuJoCo is
+asked for better accelerations. The law that phi nearly obeys is iterated first, as it costs next to
+nothing.
 """
 
 import math
@@ -26,9 +27,11 @@ MIDDLE = COUNT // 2
 _ITERATIONS = 30
 """Largest number of iterations.
 
-At a timestep that is not too long the law takes six to twelve, after which MuJoCo changes no more than rounding."""
+At a timestep that is not too long the law takes six to twelve, after which MuJoCo changes no more
+than rounding."""
 _ROUNDING = 1e-16
-"""Largest change of an acceleration in an iteration, as a share of the largest one, that is rounding."""
+"""Largest change of an acceleration in an iteration, as a share of the largest one, that is
+rounding."""
 _SMALL_CHANGE = 1e-9
 """The same, below which iterations that do not improve any more have found the accelerations."""
 _NOT_ZERO = 1e-300
@@ -36,14 +39,15 @@ _NOT_ZERO = 1e-300
 _START = row_of(MIDDLE)
 _ALL = np.int64(COUNT)  # no plain number, as for `row_of`
 _OUTWARDS = np.argsort(np.abs(np.arange(COUNT) - MIDDLE), stable=True)
-"""The first steps in the order of an iteration: the start, then the step before it and the one after it..."""
+"""The first steps in the order of an iteration: the start, then the step before it and the one
+after it..."""
 
 
 def _since_start() -> tuple[np.ndarray, np.ndarray]:
-    """Return the weights that give velocity and position at each first step, counted from the start.
+    """Return the weights that give velocity and position at each first step, since the start.
 
-    These are the velocity less that at the start, and the position less its even motion from there. Each has shape
-    (COUNT, COUNT), with a row for each step, the first one first.
+    These are the velocity less that at the start, and the position less its even motion from there.
+    Each has shape (COUNT, COUNT), with a row for each step, the first one first.
     """
     # rows for back = COUNT - 1 down to 0
     velocities = VELOCITY_WEIGHTS[:0:-1]
@@ -82,7 +86,7 @@ class FirstSums(NamedTuple):
 
 @compiled
 def evaluate(dynamics, sundman, phi, rate):
-    """Return MuJoCo's `Accelerations` where phi has a `rate` [rad/s] in Sundman time. The slide rests at its origin."""
+    """Return MuJoCo's `Accelerations` at a phi and its `rate` in Sundman time; the slide rests."""
     last = dynamics.qpos.size - 1
     sin = math.sin(sundman.multiple * phi)
     cos = math.cos(sundman.multiple * phi)
@@ -104,7 +108,7 @@ def evaluate(dynamics, sundman, phi, rate):
 
 @compiled
 def find_first_steps(dynamics, sundman, start, timestep, history):
-    """Write the accelerations of the first `COUNT` steps around the node `start` to `history`; return `FirstSums`."""
+    """Write the accelerations of the first steps around a node to `history`; return `FirstSums`."""
     optimize_for_size()
     evaluations = 0
     by_law = True

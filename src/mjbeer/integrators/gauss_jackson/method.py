@@ -1,16 +1,19 @@
-"""The integrator GaussJackson: a multistep method around MuJoCo's forward dynamics, for smooth motions.
+"""The integrator GaussJackson: a multistep method around MuJoCo's accelerations.
 
-A step predicts phi from the sums of all accelerations and the last thirteen of them, evaluates MuJoCo's acceleration
-there, and corrects phi with it. For the small change from the predicted to the corrected phi, the law that phi nearly
-obeys says how the acceleration changes; without this the method would be unstable. States are read off two steps later,
-with accelerations on both sides, where the formula errs far less.
+A step predicts phi from the sums of all accelerations and the last thirteen of them, evaluates
+MuJoCo's acceleration there, and corrects phi with it. For the small change from the predicted to
+the corrected phi, the law that phi nearly obeys says how the acceleration changes; without this the
+method would be unstable. States are read off two steps later, with accelerations on both sides,
+where the formula errs far less.
 
-Steps are even in Sundman time. If the model has a slide, the slide less arm sin(phi) is evenly accelerated, and is
-integrated in t. The motion is that of MuJoCo's accelerations alone: with a wrong law the steps must only be shorter.
+Steps are even in Sundman time. If the model has a slide, the slide less arm sin(phi) is evenly
+accelerated, and is integrated in t. The motion is that of MuJoCo's accelerations alone: with a
+wrong law the steps must only be shorter.
 
-O. Montenbruck and E. Gill, Satellite Orbits, section 4.2; M. M. Berry and L. M. Healy, Implementation of Gauss-Jackson
-integration for orbit propagation, J. Astronaut. Sci. 52 (2004), and The generalized Sundman transformation for
-propagation of high-eccentricity elliptical orbits, Adv. Astronaut. Sci. 112 (2002).
+O. Montenbruck and E. Gill, Satellite Orbits, section 4.2; M. M. Berry and L. M. Healy,
+Implementation of Gauss-Jackson integration for orbit propagation, J. Astronaut. Sci. 52 (2004), and
+The generalized Sundman transformation for propagation of high-eccentricity elliptical orbits, Adv.
+Astronaut. Sci. 112 (2002).
 """
 
 import math
@@ -66,21 +69,26 @@ _LAST = row_of(0)
 
 
 class _Totals(NamedTuple):
-    """Sums of many terms: each is an array of the sum and of the rounding error it carries."""
+    """Sums of many terms: each is an array of the sum and of the rounding error it carries.
+
+    Steady is the acceleration of the slide less arm sin(phi), whose position and velocity are here.
+    """
 
     first_sum: np.ndarray  # of the accelerations of phi, in units of the step
     second_sum: np.ndarray  # of these sums
     time: np.ndarray  # at the last state that was read off [s]
-    position: np.ndarray  # of the slide less arm sin(phi), whose acceleration is steady, at that time [m]
+    position: np.ndarray  # of the slide less arm sin(phi), at that time [m]
     velocity: np.ndarray  # of the same [m/s]
 
 
 class _Work(NamedTuple):
     """What a run carries on from block to block, and space to work in."""
 
-    history: History  # begins with the last accelerations before a block, and has room for those of the block
+    history: History
+    """It begins with the last accelerations before a block, and has room for those of the block."""
     totals: _Totals
-    coefficients: np.ndarray  # space for those of a `StepCurve`
+    coefficients: np.ndarray
+    """Space for those of a `StepCurve`."""
 
 
 class _Place(NamedTuple):
@@ -95,9 +103,10 @@ class _Place(NamedTuple):
 class GaussJackson:
     """The Gauss-Jackson method with second sums around the forward dynamics of one model.
 
-    The model has the hinge phi alone, or after a slide on which no acceleration depends. All steps last a `timestep`
-    [s] in `sundman_time`. A step is one evaluation. DOP853 has twelve or more in a step that is about as long. A
-    damping or a constraint that decays fast would make the method unstable.
+    The model has the hinge phi alone, or after a slide on which no acceleration depends. All steps
+    last a `timestep` [s] in `sundman_time`. A step is one evaluation. DOP853 has twelve or more in
+    a step that is about as long. A damping or a constraint that decays fast would make the method
+    unstable.
 
     Raises:
       UnsupportedError: if the model has constraints or damping.
@@ -105,21 +114,29 @@ class GaussJackson:
 
     def __init__(self, dynamics: Dynamics, timestep: float, sundman_time: SundmanTime) -> None:
         if dynamics.constrained:
-            raise UnsupportedError("GaussJackson integrates smooth motions only, and this model has constraints")
+            raise UnsupportedError(
+                "GaussJackson integrates smooth motions only, and this model has constraints"
+            )
         if dynamics.damped:
-            raise UnsupportedError("GaussJackson integrates undamped motions only, and this model has damping")
+            raise UnsupportedError(
+                "GaussJackson integrates undamped motions only, and this model has damping"
+            )
         self.name = "GaussJackson"
         self._dynamics = dynamics
         self._timestep = timestep
         self._sundman_time = sundman_time
 
     @quiet()
-    def run(self, start: np.ndarray, times: np.ndarray, observer: Observer | None = None) -> np.ndarray:
-        """Return the states at increasing `times` [s], shape (samples, nq + nv), of the motion from `start` at time 0.
+    def run(
+        self, start: np.ndarray, times: np.ndarray, observer: Observer | None = None
+    ) -> np.ndarray:
+        """Return the states at increasing `times` [s], shape (samples, nq + nv).
+
+        The motion begins at time 0 with the state `start`.
 
         Raises:
-          DivergenceError: if the motion stops being finite, the timestep is too long, or there are too many
-            evaluations.
+          DivergenceError: if the motion stops being finite, the timestep is too long, or there are
+            too many evaluations.
         """
         dynamics = self._dynamics
         sundman = self._sundman_time
@@ -153,7 +170,7 @@ def _node_at(start: np.ndarray, sundman: SundmanTime) -> Node:
 
 
 def _totals_at(start: np.ndarray, arm: float) -> _Totals:
-    """Return the totals at the start of a run; the first steps will give both sums of accelerations."""
+    """Return the totals at the start of a run; the first steps give both sums of accelerations."""
     totals = _Totals(*np.zeros((5, 2)))
     joints = len(start) // 2
     if joints > 1:
@@ -167,8 +184,8 @@ def _totals_at(start: np.ndarray, arm: float) -> _Totals:
 def _advance(dynamics, sundman, timestep, work, samples, ends, place):
     """Take up to a block of steps, and return the `Block`.
 
-    `dynamics` is a `ForwardDynamics`. The rows of `samples` whose times are passed are filled in, and the ends of steps
-    are written to `ends`, if that has room.
+    `dynamics` is a `ForwardDynamics`. The rows of `samples` whose times are passed are filled in,
+    and the ends of steps are written to `ends`, if that has room.
     """
     optimize_for_size()
     history = work.history
@@ -191,14 +208,17 @@ def _advance(dynamics, sundman, timestep, work, samples, ends, place):
         elif sample == samples.times.size:
             status = DONE
     while status == MORE and end < history.phi_second.size:
-        # Each turn reads off one state more. The first steps give accelerations further ahead than this needs.
+        # Each turn reads off the state one step on. The first steps already reach further ahead
+        # than that needs.
         if back > LAG:
             back -= 1
         else:
             _take_step(dynamics, sundman, timestep, work, end)
             end += 1
             evaluations += 1
-        curve = StepCurve(work.coefficients, totals.first_sum[0], totals.second_sum[0], timestep, back + 1)
+        curve = StepCurve(
+            work.coefficients, totals.first_sum[0], totals.second_sum[0], timestep, back + 1
+        )
         after = end_node(sundman, curve, history.phi_second, end)
         if not abs(after.phi) < LARGEST:  # it may also be NaN
             status = NOT_FINITE
@@ -235,18 +255,21 @@ def _advance(dynamics, sundman, timestep, work, samples, ends, place):
 
 @inlined
 def _take_step(dynamics, sundman, timestep, work, end):
-    """Predict, evaluate and correct the next step: write its accelerations at index `end`, and add them up."""
+    """Predict, evaluate and correct the next step: write its accelerations at `end`, and add
+    them."""
     history = work.history
     totals = work.totals
     square = timestep * timestep
     first_sum = totals.first_sum[0]
     second_sum = totals.second_sum[0]
-    predicted = square * (second_sum + weighted(POSITION_WEIGHTS, _NEXT, history.phi_second, end))
+    from_history = weighted(POSITION_WEIGHTS, _NEXT, history.phi_second, end)
+    predicted = square * (second_sum + from_history)
     rate = timestep * (first_sum + weighted(VELOCITY_WEIGHTS, _NEXT, history.phi_second, end))
     evaluated = evaluate(dynamics, sundman, predicted, rate)
     history.phi_second[end] = evaluated.phi_second
     history.steady[end] = evaluated.steady
-    corrected = square * (second_sum + weighted(POSITION_WEIGHTS, _LAST, history.phi_second, end + 1))
+    from_history = weighted(POSITION_WEIGHTS, _LAST, history.phi_second, end + 1)
+    corrected = square * (second_sum + from_history)
     law = sundman.law
     slope = law.sine * math.cos(predicted) - law.cosine * math.sin(predicted)
     acceleration = evaluated.phi_second + slope * (corrected - predicted)
@@ -259,8 +282,9 @@ def _take_step(dynamics, sundman, timestep, work, end):
 def _mean_steady(history, index, before, after):
     """Return the mean acceleration of the slide less arm sin(phi) in a step [m/s^2].
 
-    The step ends at an `index` of the history, and its nodes are `before` and `after`. The acceleration would be constant
-    but for rounding. Rounding is largest where the load is fastest, and there dt/ds, its weight in the mean, is least.
+    The step ends at an `index` of the history, and its nodes are `before` and `after`. The
+    acceleration would be constant but for rounding. Rounding is largest where the load is fastest,
+    and there dt/ds, its weight in the mean, is least.
     """
     weighted_sum = before.dt_ds * history.steady[index - 1] + after.dt_ds * history.steady[index]
     return weighted_sum / (before.dt_ds + after.dt_ds)
@@ -268,7 +292,7 @@ def _mean_steady(history, index, before, after):
 
 @compiled
 def _write_samples(sundman, curve, step, totals, samples, sample):
-    """Write the samples within a step, from an index `sample` on, and return the index of the next one."""
+    """Write the samples within a step, from an index on, and return the index of the next one."""
     optimize_for_size()
     while sample < samples.times.size and samples.times[sample] <= step.end_time:
         since = samples.times[sample] - totals.time[0]
@@ -280,7 +304,10 @@ def _write_samples(sundman, curve, step, totals, samples, sample):
 
 @compiled
 def _write(sundman, node, step, totals, since, states, row):
-    """Write the state at a node, `since` [s] after the start of a step, where `totals` hold, to a row of `states`."""
+    """Write the state at a node to a row of `states`.
+
+    The node is `since` [s] after the start of a step, where the `totals` hold.
+    """
     optimize_for_size()
     last = states.shape[1] // 2 - 1
     phi_dot = node.rate / node.dt_ds

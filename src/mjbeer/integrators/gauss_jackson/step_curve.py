@@ -1,7 +1,8 @@
-"""The state at the end of a step of Gauss-Jackson, the time that passes in the step, and the states within it.
+"""A step of Gauss-Jackson: the state at its end, the time that it takes, and the states within it.
 
-In a step phi is a polynomial of s: the one by which the method itself adds up accelerations. What passes of t is the
-integral of dt/ds, by Gauss's formula, without an evaluation of the dynamics. All of it is compiled code.
+In a step phi is a polynomial of s: the one by which the method itself adds up accelerations. What
+passes of t is the integral of dt/ds, by Gauss's formula, without an evaluation of the dynamics. All
+of it is compiled code.
 """
 
 import math
@@ -24,8 +25,8 @@ from mjbeer.integrators.gauss_jackson.weights import (
 _ATTEMPTS = 5
 """Largest number of improvements of `s_share`, the place of a sample in its step."""
 _PUNCTUAL = 3e-5
-"""Distance of a sample from its time, as a share of the step's duration, after which one more improvement leaves
-nothing but rounding: it cubes the distance."""
+"""Distance of a sample from its time, as a share of the step's duration, after which one more
+improvement leaves nothing but rounding: it cubes the distance."""
 
 
 class Node(NamedTuple):
@@ -120,7 +121,8 @@ def node_at(sundman, curve, s_share):
 
 @inlined
 def duration(sundman, curve, s_share):
-    """Return the time [s] that passes in the first share of the step in s, if the curve is fitted."""
+    """Return the time [s] that passes in the first share of the step in s, if the curve is
+    fitted."""
     mean = 0.0
     for point in range(sundman.points.size):
         back = curve.back - s_share * sundman.points[point]
@@ -136,7 +138,8 @@ def duration(sundman, curve, s_share):
 def find(sundman, curve, step, since):
     """Return the node `since` [s] after the start of a `WholeStep`, if the curve is fitted."""
     optimize_for_size()
-    # The first guess is the cubic in t that has the right value and slope, ds/dt, at both ends of the step.
+    # The first guess is the cubic in t that has the right value and slope, ds/dt, at both ends of
+    # the step.
     t_share = since / step.duration
     first_slope = step.duration / (curve.timestep * step.before.dt_ds)
     last_slope = step.duration / (curve.timestep * step.after.dt_ds)

@@ -1,12 +1,13 @@
 """The Sundman time s, in which the steps of Gauss-Jackson are even.
 
-A light wheel passes its lowest point in a hundredth of its swing, and steps that are even in t would all have to be as
-short as that passage needs. The (generalized) Sundman transformation
+A light wheel passes its lowest point in a hundredth of its swing, and steps that are even in t
+would all have to be as short as that passage needs. The (generalized) Sundman transformation
 
     dt/ds = sqrt(J(phi)/unit)
 
-makes the passage as long as the rest of the swing. It also takes J out of the law: with phi' = dphi/ds,
-J phi_dot^2 = unit phi'^2, so that unit phi'' = -V'(phi), a pendulum with a constant inertia.
+makes the passage as long as the rest of the swing. It also takes J out of the law: with phi' =
+dphi/ds, J phi_dot^2 = unit phi'^2, so that unit phi'' = -V'(phi), a pendulum with a constant
+inertia.
 """
 
 import functools
@@ -23,11 +24,11 @@ from mjbeer.integrators.gauss_jackson.weights import CENTRE, COUNT, LAG, POSITIO
 LARGEST_TURN = 4.0
 """The largest angle by which phi may turn in a step [rad]."""
 _MOST_POINTS = 100
-"""Largest number of points at which dt/ds is looked at in a step: so many are needed where a wheel has a thousandth of
-its load's mass."""
+"""Largest number of points at which dt/ds is looked at in a step: so many are needed where a wheel
+has a thousandth of its load's mass."""
 _LARGEST_ELLIPSE = 20.0
-"""Largest ellipse that `_points_for` assumes: a larger one would give too few points, as phi is not linear in s
-within a step."""
+"""Largest ellipse that `_points_for` assumes: a larger one would give too few points, as phi is not
+linear in s within a step."""
 
 
 class PendulumLaw(NamedTuple):
@@ -41,8 +42,8 @@ class PendulumLaw(NamedTuple):
 class SundmanTime(NamedTuple):
     """A time s with dt/ds = sqrt(constant + varying sin^2(multiple phi)), which must be positive.
 
-    Whatever dt/ds and `law` are, the motion is the same, as its accelerations are MuJoCo's; the nearer they come to the
-    motion's own, the longer the steps may be.
+    Whatever dt/ds and `law` are, the motion is the same, as its accelerations are MuJoCo's; the
+    nearer they come to the motion's own, the longer the steps may be.
     """
 
     constant: float
@@ -58,9 +59,11 @@ class SundmanTime(NamedTuple):
 def sundman_time(
     law: SwingLaw, unit: float, precision: float = 1e-15, largest_turn: float = LARGEST_TURN
 ) -> SundmanTime:
-    """Return the Sundman time of a law, in which a load with the inertia `unit` [kg m^2] has dt/ds = 1.
+    """Return the Sundman time of a law, in which a load with the inertia `unit` [kg m^2] has dt/ds
+    = 1.
 
-    The duration of a step in which phi turns by `largest_turn` [rad] is known to some `precision`, a share of it.
+    The duration of a step in which phi turns by `largest_turn` [rad] is known to some `precision`,
+    a share of it.
     """
     constant = law.base / unit
     varying = law.chord / unit
@@ -86,12 +89,14 @@ def sundman_time(
     )
 
 
-def _points_for(constant: float, varying: float, multiple: float, precision: float, largest_turn: float) -> int:
+def _points_for(
+    constant: float, varying: float, multiple: float, precision: float, largest_turn: float
+) -> int:
     """Return the number of points with which Gauss's formula gives a duration to some precision.
 
-    Its error falls by the square of an ellipse's size with each point. The foci of the ellipse are the ends of the
-    step, and the complex angle at which dt/ds vanishes lies on it. Its size is the sum of its half-axes, divided by
-    half the distance of its foci.
+    Its error falls by the square of an ellipse's size with each point. The foci of the ellipse are
+    the ends of the step, and the complex angle at which dt/ds vanishes lies on it. Its size is the
+    sum of its half-axes, divided by half the distance of its foci.
     """
     size = math.log(_LARGEST_ELLIPSE)
     if varying > 0 and largest_turn > 0:
@@ -111,8 +116,9 @@ def _gauss(count: int) -> tuple[np.ndarray, np.ndarray]:
 def _places(count: int) -> np.ndarray:
     """Return the weights of positions at so many points of a step, one in a row.
 
-    First come the points of the step that ends `LAG` steps before the last acceleration, then those of the steps before
-    it, back to the start of a run, when the last acceleration is the last of the first steps.
+    First come the points of the step that ends `LAG` steps before the last acceleration, then those
+    of the steps before it, back to the start of a run, when the last acceleration is the last of
+    the first steps.
     """
     points, _ = _gauss(count)
     ends = np.arange(LAG, COUNT // 2)
