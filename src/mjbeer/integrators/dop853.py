@@ -226,32 +226,39 @@ def _advance(dynamics, tableau, control, work, samples, ends, place):
         if sample == samples.times.size:
             status = DONE
             break
+
+        # Take a step.
         for stage in range(1, _END + 1):
             _evaluate(dynamics, tableau, work, step, stage, end)
         evaluations += _END
         _end_step(tableau, work, step)
         finite = _is_finite(end)
-        error = 0.0
         if control.fixed and not finite:
             status = NOT_FINITE
             break
+
+        # If its length is variable, take it again where its error is too large, or to a corner.
+        error = 0.0
+        has_output = False
         if not control.fixed:
             error = _error(tableau, control, work, step) if finite else np.inf
-            if not error < 1.0:  # take it again
+            if not error < 1.0:
                 step *= max(_SHRINK, _CAUTION * error ** (-1 / 8)) if finite else _SHRINK
                 if not step > max(_SHORTEST * time, _SHORTEST_AT_START):  # it may also be NaN
                     status = STEP_TOO_SMALL if finite else NOT_FINITE
                     break
                 continue
-        has_output = not control.fixed and _passes_corner(control.corners, state, end)
-        if has_output:
-            evaluations += _prepare_output(dynamics, tableau, work, step)
-            part = _first_corner(control.corners, work)
-            if part < 1.0:  # take it again, to the corner
-                step *= part
-                continue
+            if _passes_corner(control.corners, state, end):
+                evaluations += _prepare_output(dynamics, tableau, work, step)
+                has_output = True
+                to_corner = _first_corner(control.corners, work)
+                if to_corner < 1.0:
+                    step *= to_corner
+                    continue
+
+        # It stands. Read off the samples in it.
         steps += 1
-        added = step - time_carry
+        added = step - time_carry  # as in `_end_step`
         end_time = steps * step if control.fixed else time + added
         passed = end_time * (1 + ON_TIME)
         while sample < samples.times.size and samples.times[sample] <= passed:
@@ -264,6 +271,8 @@ def _advance(dynamics, tableau, control, work, samples, ends, place):
                     has_output = True
                 _interpolate(work, part, samples.states[sample])
             sample += 1
+
+        # Go on from its end.
         time_carry = (end_time - time) - added
         time = end_time
         write(end, state)

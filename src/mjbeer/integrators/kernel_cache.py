@@ -50,23 +50,26 @@ def compile_and_keep(function: Callable[..., Any], **options: Any) -> Any:
 
 
 def _folder() -> pathlib.Path:
-    """Return the folder for these sources, in that which numba itself would take: one that can be
-    written to.
+    """Return the folder for these sources, in numba's own folder: that can be written to.
 
     Each user has a folder of their own, as they may not be able to write into another's.
     """
     content = hashlib.sha256(str(os.getuid() if hasattr(os, "getuid") else "").encode())
     for path in SOURCES:
         content.update(path.read_bytes())
-    # numba tells only a compiled function where it would keep it.
-    return pathlib.Path(
-        njit(_folder, cache=True).stats.cache_path, _PREFIX + content.hexdigest()[:16]
-    )
+    return _numba_folder() / f"{_PREFIX}{content.hexdigest()[:16]}"
+
+
+def _numba_folder() -> pathlib.Path:
+    """Return the folder in which numba would keep the code of this file.
+
+    It tells this of functions that it compiles only, and so this one is marked to be compiled.
+    """
+    return pathlib.Path(njit(_numba_folder, cache=True).stats.cache_path)
 
 
 def _tidy() -> None:
-    """Make the folder, as one that is used today, and remove those of other sources that have long
-    been unused."""
+    """Make the folder, mark it as used today, and remove those of other sources, long unused."""
     FOLDER.mkdir(parents=True, exist_ok=True)
     os.utime(FOLDER)
     for other in FOLDER.parent.glob(f"{_PREFIX}*"):

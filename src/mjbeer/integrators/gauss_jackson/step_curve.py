@@ -88,7 +88,8 @@ def whole_duration(sundman, curve, accelerations, end):
     mean = 0.0
     for point in range(count):
         ahead = 1 + curve.back - sundman.points[point]
-        phi = _phi(curve, ahead, weighted(sundman.places, first_row + point, accelerations, end))
+        row = first_row + point
+        phi = _phi(curve, ahead, weighted(sundman.position_weights, row, accelerations, end))
         mean += sundman.weights[point] * dt_ds(sundman, phi)
     return curve.timestep * mean
 

@@ -53,7 +53,7 @@ class SundmanTime(NamedTuple):
     arm: float  # the slide less arm sin(phi) is evenly accelerated [m]
     points: np.ndarray  # of Gauss's formula in a step, between 0 and 1
     weights: np.ndarray  # of these points, whose sum is 1
-    places: np.ndarray  # weights of accelerations in the positions at these points, see `_places`
+    position_weights: np.ndarray  # of the accelerations, for phi at these points
 
 
 def sundman_time(
@@ -85,7 +85,7 @@ def sundman_time(
         arm=law.arm,
         points=points,
         weights=weights,
-        places=_places(count),
+        position_weights=_position_weights(count),
     )
 
 
@@ -94,15 +94,15 @@ def _points_for(
 ) -> int:
     """Return the number of points with which Gauss's formula gives a duration to some precision.
 
-    Its error falls by the square of an ellipse's size with each point. The foci of the ellipse are
-    the ends of the step, and the complex angle at which dt/ds vanishes lies on it. Its size is the
-    sum of its half-axes, divided by half the distance of its foci.
+    With each point its error falls by the square of an ellipse's size. The foci of this ellipse in
+    the complex plane are the ends of the step, and it passes through the angle at which dt/ds
+    vanishes. Its size is the sum of its half-axes, divided by half the distance of its foci.
     """
-    size = math.log(_LARGEST_ELLIPSE)
+    logarithm = math.log(_LARGEST_ELLIPSE)  # of the size
     if varying > 0 and largest_turn > 0:
-        zero = math.asinh(math.sqrt(constant / varying)) / multiple
-        size = min(size, math.asinh(2 * zero / largest_turn))
-    return min(_MOST_POINTS, math.ceil(-math.log(precision) / (2 * size)))
+        zero = math.asinh(math.sqrt(constant / varying)) / multiple  # the imaginary angle
+        logarithm = min(logarithm, math.asinh(2 * zero / largest_turn))
+    return min(_MOST_POINTS, math.ceil(-math.log(precision) / (2 * logarithm)))
 
 
 @functools.cache
@@ -113,19 +113,20 @@ def _gauss(count: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 @functools.cache
-def _places(count: int) -> np.ndarray:
-    """Return the weights of positions at so many points of a step, one in a row.
+def _position_weights(count: int) -> np.ndarray:
+    """Return the weights of accelerations for phi at so many points of a step, a row for each
+    point.
 
-    First come the points of the step that ends `LAG` steps before the last acceleration, then those
-    of the steps before it, back to the start of a run, when the last acceleration is the last of
-    the first steps.
+    The first rows are those of a step that ends `LAG` steps before the last acceleration, as most
+    steps of a run do. The next rows are those of a step that ends one step earlier, and so on, as
+    the steps at the beginning of a run do.
     """
     points, _ = _gauss(count)
-    ends = np.arange(LAG, COUNT // 2)
+    ends = np.arange(LAG, COUNT // 2)  # steps before the last acceleration
     back = (ends[:, None] + 1 - points).ravel()
-    places = np.vander(back - CENTRE, COUNT + 2) @ POSITION_POLYNOMIALS.T
-    places.flags.writeable = False  # like all weights, or `weighted` would be compiled once more
-    return places
+    weights = np.vander(back - CENTRE, COUNT + 2) @ POSITION_POLYNOMIALS.T
+    weights.flags.writeable = False  # like all weights, or `weighted` would be compiled once more
+    return weights
 
 
 @inlined
