@@ -307,8 +307,7 @@ def _evaluate(dynamics, tableau, work, step, stage, out):
 
 @inlined
 def _end_step(tableau, work, step):
-    """Write the state at the end of the step, as Kahan's sum: less what rounding has added so
-    far."""
+    """Write the state at the end of the step, less what rounding has added (Kahan's sum)."""
     for i in range(work.end.size):
         rate = 0.0
         for stage in range(_END):
@@ -349,8 +348,7 @@ def _error(tableau, control, work, step):
 
 @inlined
 def _next_step(control, step, error, error_before, remaining):
-    """Return the length [s] of the step after one with this `error`; the run ends in `remaining`
-    [s]."""
+    """Return the next step [s] after one with this `error`; `remaining` is left of the run [s]."""
     # exponents as in DOPRI5, for order 8
     power = 0.75 * _MEMORY - 1 / 8
     growth = _CAUTION * max(error, _LEAST_NEW_ERROR) ** power * error_before**_MEMORY
@@ -406,8 +404,7 @@ def _interpolate(work, part, out):
 
 @compiled
 def _passes_corner(corners, state, end):
-    """Return whether one of the `corners`' rates changes its sign in a step, by more than
-    rounding."""
+    """Return whether one of the `corners`' rates, if it is no rounding, changes its sign."""
     optimize_for_size()
     for row in range(len(corners)):
         first = 0.0

@@ -123,8 +123,7 @@ class Dynamics:
         return used
 
     def model_has_changed(self) -> None:
-        """Take notice of new numbers in the model: a smooth one has new constant actuator
-        forces."""
+        """Take notice of new numbers in the model: constant actuator forces change with them."""
         vars(self).pop("corners", None)
         if self._smooth and self._actuated:
             mujoco.mj_forward(self.model, self.data)
@@ -239,7 +238,6 @@ def write_derivative(dynamics, state, out):
 
 @inlined
 def write(values, out):
-    """Write values to `out`, of the same size: the error of `out[:] = values` takes long to
-    compile."""
+    """Write values to `out`, of the same size; `out[:] = values` takes seconds to compile."""
     for i in range(values.size):
         out[i] = values[i]

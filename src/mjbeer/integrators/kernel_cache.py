@@ -1,5 +1,4 @@
-"""The folder in which compiled kernels are kept: its name has a hash of all files that their code
-may come from.
+"""The folder for compiled kernels, with a hash of all files that their code may come from.
 
 numba compiles a kernel anew when the kernel's own file has changed, and looks at no other. But what
 a kernel calls is compiled into it, as are the constants that it uses, and these lie in other files
@@ -34,8 +33,7 @@ _lock = threading.Lock()
 
 
 def compile_and_keep(function: Callable[..., Any], **options: Any) -> Any:
-    """Return the kernel that numba compiles from a function when it is called, or loads from
-    `FOLDER`.
+    """Return the kernel of a function: numba compiles it when it is called, or loads it.
 
     `options` are those of `njit`. The folder is numba's setting while the kernel is made, and the
     user's own functions are kept where the user wants them.

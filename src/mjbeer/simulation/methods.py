@@ -115,8 +115,7 @@ def suits_gauss_jackson(scene: Scene, model: mujoco.MjModel) -> bool:
 def finer_gauss_jackson(
     stepped: SteppedModel, start: np.ndarray, duration: float, tolerance: float
 ) -> Iterator[Method]:
-    """Yield Gauss-Jackson with shorter and shorter timesteps, to err by `tolerance` [rad] at
-    first."""
+    """Yield Gauss-Jackson with shorter and shorter timesteps; the first may err by `tolerance`."""
     from mjbeer.integrators.gauss_jackson import GaussJackson, first_timestep, sundman_time
 
     law = swing_law(stepped.scene)

@@ -21,8 +21,8 @@ from mjbeer.theory.oscillator import reduced
 from mjbeer.theory.scene import DURATION, PHI0, Scene
 
 _ON_A_STEP = 1e-10
-"""Largest distance of a requested time from a multiple of the timestep, over the time: a running
-sum of a million timesteps, as MuJoCo's own clock counts, is 2e-11 off (measured)."""
+"""Largest distance of a requested time from a multiple of the timestep, divided by the time: a sum
+of a million timesteps, as MuJoCo's own clock makes it, is 2e-11 off (measured)."""
 _MOST_SAMPLES = 1e8
 """Largest number of samples at every timestep: they take ten gigabytes."""
 _MOST_STEPS = 1e12

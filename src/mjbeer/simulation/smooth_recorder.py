@@ -191,8 +191,7 @@ def _add_step(numbers, friction, slides, time, state, passed, extremes):
 
 @kernel
 def _add(numbers, friction, slides, begun, times, states, passed_row, extremes_row):
-    """Add steps to what has passed and to the extremes; if nothing has `begun`, the start is
-    first."""
+    """Add steps to what has passed and to the extremes; the start is first if not yet `begun`."""
     passed = passed_row[0]
     extremes = extremes_row[0]
     first = 0

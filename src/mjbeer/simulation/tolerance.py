@@ -100,10 +100,9 @@ class _FullRun(NamedTuple):
 def solve_to_tolerance(
     methods: Iterable[Method], problem: Problem, make_recorder: Callable[[], RecordingObserver]
 ) -> Solution:
-    """Return the run of the first of these finer and finer `methods` that comes close enough to the
-    one before it.
+    """Return the run of the first of these finer and finer `methods` that comes close enough.
 
-    There are two methods at least.
+    It has to come close to the run of the method before it; there are two methods at least.
 
     Raises:
       ToleranceError: if none does, or if rounding alone may be more than the tolerance.
@@ -119,6 +118,7 @@ def solve_to_tolerance(
         return _FullRun(method, states, recorder.record)
 
     try:
+        # Two runs, the coarser one with a nudged start.
         first_method = next(finer_methods)
         nudged = first_method.run(problem.nudged_start, compared_times)
         fine = run(next(finer_methods))
@@ -126,11 +126,13 @@ def solve_to_tolerance(
         if error <= tolerance:
             return fine.solution(error)
 
+        # A third run: is it their steps that part them, or rounding?
         coarse = first_method.run(problem.start, compared_times)
         error = estimate_error(problem, coarse, fine.states[compared], fine.record)
         if error <= tolerance:
             return fine.solution(max(error, estimate_rounding(problem, coarse, nudged)))
 
+        # Their steps: finer and finer runs.
         for method in finer_methods:
             coarser = fine
             coarse = coarser.states[compared]
@@ -149,8 +151,7 @@ def solve_to_tolerance(
 
 
 def estimate_error(problem: Problem, coarse: np.ndarray, fine: np.ndarray, record: Record) -> float:
-    """Return the error of the finer of two runs [rad]: by their distance, and by what its `record`
-    shows."""
+    """Return the error of the finer of two runs [rad], by their distance and by its `record`."""
     distance = largest_distance(problem, coarse, fine)
     return max(SAFETY * distance, DRIFT * record.swing_error, record.axis_error)
 
@@ -170,8 +171,7 @@ def estimate_rounding(problem: Problem, coarse: np.ndarray, nudged: np.ndarray) 
 
 
 def largest_distance(problem: Problem, coarse: np.ndarray, fine: np.ndarray) -> float:
-    """Return the largest distance of two runs in phi or u/a [rad], relative to the angle turned
-    beyond 1 rad."""
+    """Return the largest distance of two runs in phi or u/a [rad], relative beyond 1 rad turned."""
     angles = problem.angles
     return largest_angle_error(coarse @ angles, fine @ angles, problem.start @ angles)
 

@@ -197,6 +197,7 @@ def _advance(dynamics, sundman, timestep, work, samples, ends, place):
     evaluations = 0
     row = 0
     end = history.phi_second.size - BLOCK  # the accelerations before this index are there
+
     if place.is_first:
         row = 1  # the row before has the start
         begin = find_first_steps(dynamics, sundman, node, timestep, history)
@@ -207,18 +208,20 @@ def _advance(dynamics, sundman, timestep, work, samples, ends, place):
             status = STEP_TOO_LONG
         elif sample == samples.times.size:
             status = DONE
+
     while status == MORE and end < history.phi_second.size:
-        # Each turn reads off the state one step on. The first steps already reach further ahead
-        # than that needs.
+        # Have accelerations `LAG` steps ahead of the next state: the first steps reach further.
         if back > LAG:
             back -= 1
         else:
             _take_step(dynamics, sundman, timestep, work, end)
             end += 1
             evaluations += 1
-        curve = StepCurve(
-            work.coefficients, totals.first_sum[0], totals.second_sum[0], timestep, back + 1
-        )
+
+        # Read off that state, and the time that passes until then.
+        first_sum = totals.first_sum[0]
+        second_sum = totals.second_sum[0]
+        curve = StepCurve(work.coefficients, first_sum, second_sum, timestep, back + 1)
         after = end_node(sundman, curve, history.phi_second, end)
         if not abs(after.phi) < LARGEST:  # it may also be NaN
             status = NOT_FINITE
@@ -230,6 +233,8 @@ def _advance(dynamics, sundman, timestep, work, samples, ends, place):
         end_time = totals.time[0] + duration
         steady = _mean_steady(history, end - 1 - back, node, after)
         step = WholeStep(node, after, duration, end_time * (1 + ON_TIME), steady)
+
+        # Write the samples in the step, and its end.
         if samples.times[sample] <= step.end_time:
             fit(curve, history.phi_second, end)
             sample = _write_samples(sundman, curve, step, totals, samples, sample)
@@ -243,10 +248,13 @@ def _advance(dynamics, sundman, timestep, work, samples, ends, place):
                 ends.times[row] = end_time
                 _write(sundman, after, step, totals, duration, ends.states, row)
             row += 1
+
+        # Go on from its end.
         _add(totals.time, duration)
         _add(totals.position, duration * (totals.velocity[0] + duration * steady / 2))
         _add(totals.velocity, duration * steady)
         node = after
+
     for k in range(COUNT):  # the next block begins with the last accelerations of this one
         history.phi_second[k] = history.phi_second[end - COUNT + k]
         history.steady[k] = history.steady[end - COUNT + k]
@@ -255,8 +263,7 @@ def _advance(dynamics, sundman, timestep, work, samples, ends, place):
 
 @inlined
 def _take_step(dynamics, sundman, timestep, work, end):
-    """Predict, evaluate and correct the next step: write its accelerations at `end`, and add
-    them."""
+    """Predict, evaluate and correct the next step; its accelerations get the index `end`."""
     history = work.history
     totals = work.totals
     square = timestep * timestep

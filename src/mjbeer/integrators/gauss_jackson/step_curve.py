@@ -75,7 +75,7 @@ def end_node(sundman, curve, accelerations, end):
     """Return the node at the end of the step, by the accelerations before index `end`."""
     ahead = curve.back  # one less than at the start of the step
     row = ahead  # of the weights there, as `row_of` says
-    phi = _phi(curve, ahead, weighted(POSITION_WEIGHTS, row, accelerations, end))
+    phi = _phi(curve, float(ahead), weighted(POSITION_WEIGHTS, row, accelerations, end))
     scaled_rate = curve.first_sum + weighted(VELOCITY_WEIGHTS, row, accelerations, end)
     return Node(phi, curve.timestep * scaled_rate, dt_ds(sundman, phi))
 
@@ -107,7 +107,7 @@ def fit(curve, accelerations, end):
 
 @inlined
 def node_at(sundman, curve, s_share):
-    """Return the node after a share of the step in s, between 0 and 1, if the curve is fitted."""
+    """Return the node after a share of the step in s, between 0 and 1; the curve is fitted."""
     back = curve.back - s_share
     x = back - CENTRE
     value = 0.0
@@ -122,8 +122,7 @@ def node_at(sundman, curve, s_share):
 
 @inlined
 def duration(sundman, curve, s_share):
-    """Return the time [s] that passes in the first share of the step in s, if the curve is
-    fitted."""
+    """Return the time [s] that passes in a first share of the step in s; the curve is fitted."""
     mean = 0.0
     for point in range(sundman.points.size):
         back = curve.back - s_share * sundman.points[point]
@@ -137,10 +136,9 @@ def duration(sundman, curve, s_share):
 
 @compiled
 def find(sundman, curve, step, since):
-    """Return the node `since` [s] after the start of a `WholeStep`, if the curve is fitted."""
+    """Return the node `since` [s] after the start of a `WholeStep`; the curve is fitted."""
     optimize_for_size()
-    # The first guess is the cubic in t that has the right value and slope, ds/dt, at both ends of
-    # the step.
+    # The first guess is a cubic in t: it has the right value and slope, ds/dt, at both ends.
     t_share = since / step.duration
     first_slope = step.duration / (curve.timestep * step.before.dt_ds)
     last_slope = step.duration / (curve.timestep * step.after.dt_ds)

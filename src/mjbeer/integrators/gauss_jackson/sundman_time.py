@@ -59,8 +59,7 @@ class SundmanTime(NamedTuple):
 def sundman_time(
     law: SwingLaw, unit: float, precision: float = 1e-15, largest_turn: float = LARGEST_TURN
 ) -> SundmanTime:
-    """Return the Sundman time of a law, in which a load with the inertia `unit` [kg m^2] has dt/ds
-    = 1.
+    """Return the Sundman time of a law, with dt/ds = 1 where J is the `unit` [kg m^2].
 
     The duration of a step in which phi turns by `largest_turn` [rad] is known to some `precision`,
     a share of it.
@@ -114,8 +113,7 @@ def _gauss(count: int) -> tuple[np.ndarray, np.ndarray]:
 
 @functools.cache
 def _position_weights(count: int) -> np.ndarray:
-    """Return the weights of accelerations for phi at so many points of a step, a row for each
-    point.
+    """Return the weights of accelerations for phi at points of a step, a row for each point.
 
     The first rows are those of a step that ends `LAG` steps before the last acceleration, as most
     steps of a run do. The next rows are those of a step that ends one step earlier, and so on, as

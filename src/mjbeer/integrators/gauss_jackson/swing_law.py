@@ -8,8 +8,7 @@ from typing import NamedTuple
 
 
 class SwingLaw(NamedTuple):
-    """The law that phi nearly obeys: an oscillator whose inertia J depends on phi, in a potential
-    V.
+    """The law that phi nearly obeys: an oscillator with an inertia J(phi) and a potential V(phi).
 
         J phi_dot^2 / 2 + V = E,
         J = base + chord sin^2(phi/2) + coupling sin^2(phi),

@@ -51,10 +51,9 @@ def weights_at(power: int, back: int) -> np.ndarray:
 
 
 def position_polynomials() -> np.ndarray:
-    """Return the weights of positions as polynomials of `back` - `CENTRE`, shape (COUNT, COUNT +
-    2).
+    """Return the weights of positions as polynomials of `back` - `CENTRE`.
 
-    The highest power is first.
+    The shape is (COUNT, COUNT + 2), with the highest power first.
     """
     back = Polynomial([CENTRE, 1.0])
     shift = [Polynomial([1.0])]
@@ -84,10 +83,9 @@ def _product(first: Sequence[Any], second: Sequence[Any]) -> list[Any]:
 
 
 def _of_ordinates(differences: Sequence[Any]) -> list[Any]:
-    """Return the weights of accelerations, the oldest first, from those of their differences, z^0
-    first.
+    """Return the weights of accelerations, the oldest first, from those of differences.
 
-    z^j a_n is the sum over k of (-1)^k binomial(j, k) a_(n-k).
+    The difference z^0 comes first. z^j a_n is the sum over k of (-1)^k binomial(j, k) a_(n-k).
     """
     ordinates = []
     for k in range(COUNT):
@@ -111,18 +109,16 @@ POSITION_POLYNOMIALS = position_polynomials()
 
 
 def row_of(back: int) -> np.int64:
-    """Return the row of these weights. numba would compile `weighted` once more for each plain
-    number."""
+    """Return the row of these weights; a plain number would have `weighted` compiled again."""
     return np.int64(back + 1)
 
 
 @inlined
 def weighted(weights, row, accelerations, end):
-    """Return the sum of the `COUNT` accelerations before index `end`, with a row of weights, in
-    four sums that overlap.
+    """Return the sum of `COUNT` accelerations before index `end`, with a row of weights.
 
-    The order of the additions is fixed: left to the compiler, code loaded from the cache could
-    round differently from code just compiled.
+    It is the sum of four sums that overlap. The order of additions is fixed: left to the compiler,
+    code loaded from the cache could round differently from code just compiled.
     """
     first = weights[row, COUNT - 1] * accelerations[end - 1]
     second = 0.0
