@@ -30,11 +30,9 @@ _FINER_RUNS = 5
 """Largest number of runs of Gauss-Jackson: the error of the last is 1.4^(4 x 13) = 4e7 times
 smaller than that of the first."""
 _TIME_PRECISION = 1e-3
-"""Precision of the durations of Gauss-Jackson's steps divided by the tolerance: it must not
-count."""
+"""Precision of the durations of Gauss-Jackson's steps, divided by the tolerance."""
 _FIRST_LOCAL = 1 / 200
-"""Local tolerance of DOP853's first run divided by the tolerance: the errors of its steps add
-up."""
+"""Local tolerance of DOP853's first run divided by the tolerance: errors of steps add up."""
 _COARSEST_LOCAL = 1e-7
 """Largest local tolerance of a first run: with larger steps two runs may agree by accident."""
 _FINER_LOCAL = 64.0

@@ -77,7 +77,8 @@ def _try_methods(
 ) -> Solution:
     """Return the motion with an error of phi and u/a below `tolerance` [rad].
 
-    Gauss-Jackson is tried first, if the motion is one for it. Otherwise, or if it fails, DOP853 is.
+    If the motion is smooth and undamped, Gauss-Jackson is tried. If it is not, or if that fails,
+    DOP853 follows.
     """
     from mjbeer.simulation.smooth_recorder import SmoothRecorder  # numba is slow to import
 
