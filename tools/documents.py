@@ -62,7 +62,9 @@ def anew(text: str) -> str:
     return MARKED.sub(lambda found: f"{found[1]}{MADE[found['name']]().strip()}\n{found[3]}", text)
 
 
-def table(columns: tuple[str, ...], lines: Sequence[tuple[str, ...]], left: tuple[int, ...] = (0,)) -> str:
+def table(
+    columns: tuple[str, ...], lines: Sequence[tuple[str, ...]], left: tuple[int, ...] = (0,)
+) -> str:
     """Return a table as Markdown."""
     return Table("", columns, lines, left).markdown()
 
@@ -126,13 +128,17 @@ def misprints() -> str:
     """What is wrong in the paper, and by how much."""
     found = [(row.equation, row.misprint) for row in paper.claims() if row.misprint]
     kinds = {MISPRINT: "", CONSEQUENCE: " (follows)", APPROXIMATION: " (approximation)"}
-    lines = [(name, each.about + kinds[each.kind], f"{each.expected_error:.2g}") for name, each in found]
+    lines = [
+        (name, each.about + kinds[each.kind], f"{each.expected_error:.2g}") for name, each in found
+    ]
     return table(("equation", "what is wrong in it", "its error"), lines, left=(0, 1))
 
 
 def some(shown: Table) -> str:
     """Return a table without the rows that say little more than their neighbours."""
-    return table(shown.columns, [row for row in shown.rows if not any(each in row[0] for each in LEFT_OUT)])
+    return table(
+        shown.columns, [row for row in shown.rows if not any(each in row[0] for each in LEFT_OUT)]
+    )
 
 
 def others() -> str:
@@ -191,7 +197,10 @@ def stable_slip(integrator: str) -> float:
     if integrator not in predictions.RUNGE_KUTTA:
         return math.inf if integrator == "discrete" else 1.0
     coefficients = predictions.polynomial(integrator)[::-1]
-    return predictions.first(lambda rate: abs(float(np.polyval(coefficients, -rate))) - 1, 0.1, 50.0) / 2
+    return (
+        predictions.first(lambda rate: abs(float(np.polyval(coefficients, -rate))) - 1, 0.1, 50.0)
+        / 2
+    )
 
 
 def steps() -> str:
@@ -213,10 +222,18 @@ def steps() -> str:
         "swing within 1 % for ten periods: ωh below": predictions.accurate_limit,
     }
     lines = [
-        (name, *("no limit" if (most := limit(each)) == math.inf else f"{most:.2g}" for each in methods))
+        (
+            name,
+            *(
+                "no limit" if (most := limit(each)) == math.inf else f"{most:.2g}"
+                for each in methods
+            ),
+        )
         for name, limit in bounded.items()
     ]
-    return table(("", "Euler, implicit, implicitfast", "discrete", "RK4", "DOP853 around MuJoCo"), lines)
+    return table(
+        ("", "Euler, implicit, implicitfast", "discrete", "RK4", "DOP853 around MuJoCo"), lines
+    )
 
 
 def agreement() -> str:
@@ -248,10 +265,14 @@ def damped() -> str:
     dampings, lines = (0.01, 0.1, 1.0), []
     for of in (each for each in MAPS if each.family == "damping"):
         step = min(range(len(of.timesteps)), key=lambda at: abs(math.log(of.timesteps[at] / 1e-3)))
-        values = [min(of.values, key=lambda value: abs(math.log(value / damping))) for damping in dampings]
+        values = [
+            min(of.values, key=lambda value: abs(math.log(value / damping))) for damping in dampings
+        ]
         ended = (words[int(of.measured[of.values.index(value)][step])] for value in values)
         lines.append((of.integrator, *ended))
-    return table(("1 ms", *(f"{damping:g} N m s" for damping in dampings)), lines, left=(0, 1, 2, 3))
+    return table(
+        ("1 ms", *(f"{damping:g} N m s" for damping in dampings)), lines, left=(0, 1, 2, 3)
+    )
 
 
 def damped_runs() -> str:
@@ -292,10 +313,15 @@ def alone(count: dict[str, int]) -> int:
 def kinds() -> str:
     """How the random runs ended, by kind of model, and what judged them."""
     counted = stability_study.Totals(COUNTS["known"], COUNTS["kinds"])
-    shown = next(each for each in stability_study.search_tables(counted) if "by model" in each.title)
+    shown = next(
+        each for each in stability_study.search_tables(counted) if "by model" in each.title
+    )
     left_out = NOBODY, BOTH, SERIES, stability_study.ABOVE, stability_study.TWICE
     columns = [at for at, name in enumerate(shown.columns) if name not in left_out]
-    return table(tuple(shown.columns[at] for at in columns), [tuple(row[at] for at in columns) for row in shown.rows])
+    return table(
+        tuple(shown.columns[at] for at in columns),
+        [tuple(row[at] for at in columns) for row in shown.rows],
+    )
 
 
 def honesty() -> str:
@@ -328,7 +354,9 @@ def speeds() -> str:
                 warnings.simplefilter("ignore", LiquidWarning)
                 scene = liquid(name, incline)
             speed = scene.terminal_speed()
-            within = centrifugal_ratio(scene, speed) < 1 and liquid_in(name, incline).carried < 1 / 3
+            within = (
+                centrifugal_ratio(scene, speed) < 1 and liquid_in(name, incline).carried < 1 / 3
+            )
             cells.append(f"{speed:.2g}" if within else f"({speed:.2g})")
         arc = math.pi * scene.can.radius
         lines.append((
@@ -349,7 +377,12 @@ def metre() -> str:
     for volume in (1.0, 6.0, 10.0, 50.0, 177.0, 350.0):
         free = real_beer.water_in(volume, GENTLE, friction=0.0)
         runs = []
-        for friction, drag in ((1.0, 0.0), (1 / real_beer.SPREAD, 0.0), (real_beer.SPREAD, 0.0), (1.0, real_beer.DRAG)):
+        for friction, drag in (
+            (1.0, 0.0),
+            (1 / real_beer.SPREAD, 0.0),
+            (real_beer.SPREAD, 0.0),
+            (1.0, real_beer.DRAG),
+        ):
             scene = real_beer.water_in(volume, GENTLE, friction, drag)
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", LiquidWarning)

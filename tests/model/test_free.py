@@ -29,7 +29,9 @@ def test_a_lying_can_has_the_inertia_of_its_parts(fill: float) -> None:
         type=mujoco.mjtGeom.mjGEOM_MESH, meshname="beer", density=1000
     )
     model = spec.compile()
-    inertia = free_numbers.lying_parameters(frozen(fill=fill, can=METAL))["inertial load", "diaginertia"]
+    inertia = free_numbers.lying_parameters(frozen(fill=fill, can=METAL))[
+        "inertial load", "diaginertia"
+    ]
     # The mesh is a polygon of 256 edges, and short of the circle by 6e-4.
     assert np.sort(inertia) == pytest.approx(np.sort(model.body("beer").inertia), rel=2e-3)
     sheet = 2 * math.pi * METAL.radius * 0.27

@@ -59,7 +59,13 @@ def draw(monkeypatch: pytest.MonkeyPatch, fail_at: str = "") -> list[video.FilmJ
     monkeypatch.setattr(jobs, "run_jobs", lambda given, _: [job.work() for job in given])
     monkeypatch.setattr(opengl, "problem", lambda: None)
     story = Story(
-        "told", "A story & a title", "", "A stub's story.", PlotSize(1, 1, 4, 3), lambda panels: None, film
+        "told",
+        "A story & a title",
+        "",
+        "A stub's story.",
+        PlotSize(1, 1, 4, 3),
+        lambda panels: None,
+        film,
     )
     monkeypatch.setattr(stories, "STORIES", (story,))
     monkeypatch.setattr(page, "plot_jobs", few)
