@@ -125,7 +125,8 @@ def draw_periods() -> None:
         axes.plot(tilts, np.degrees(largest), **LINE)
         axes.set(xlabel="incline [°]", ylabel="amplitude [°]", xlim=(0, tilts[-1]), ylim=(0, 180))
         axes.grid(visible=False)
-        axes.figure.colorbar(mesh, ax=axes, label="period by MuJoCo [s]")
+        # The layout of `chart` fails on a gridspec for the bar, which has rows without height.
+        axes.figure.colorbar(mesh, ax=axes, label="period by MuJoCo [s]", use_gridspec=False)
         label = "by exact theory: the largest swing, and periods in white"
         name_below([axes], 1, [Line2D([], [], label=label, **LINE)])
 
