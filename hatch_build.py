@@ -1,4 +1,4 @@
-"""The long description of the package: the README, so that it can also be read apart from the checkout.
+"""The long description of the package: the README, readable apart from the checkout as well.
 
 A package index shows the text alone: what the README links to by a relative path is not there.
 """
@@ -10,11 +10,14 @@ from hatchling.metadata.plugin.interface import MetadataHookInterface
 
 _RELATIVE = re.compile(r"(?P<image>!?)\[(?P<text>[^]]*)\]\((?![a-z]+:|#)(?P<path>[^)\s]+)\)")
 """A link to a file of the checkout, or a picture from it."""
-_NOTE = "*The pictures, the documents and the Makefile that this text names are in the source distribution.*"
+_NOTE = (
+    "*The pictures, the documents and the Makefile that this text names "
+    "are in the source distribution.*"
+)
 
 
 class LongDescription(MetadataHookInterface):
-    """The hook that hatchling calls for each field of the metadata that `pyproject.toml` calls dynamic."""
+    """The hook that hatchling calls for each dynamic field of the metadata in `pyproject.toml`."""
 
     def update(self, metadata: dict) -> None:
         """Add the long description to the metadata of the project."""
@@ -26,7 +29,8 @@ class LongDescription(MetadataHookInterface):
 def long_description(readme: str, repository: str | None) -> str:
     """Return the README without relative links.
 
-    Each link leads into the `repository` on GitHub. Where that has no public address, None, the file is named instead.
+    Each link leads into the `repository` on GitHub. Where that has no public address, None, the
+    file is named instead.
     """
     if repository is None:
         title, rest = readme.split("\n", maxsplit=1)
@@ -34,8 +38,7 @@ def long_description(readme: str, repository: str | None) -> str:
 
     def absolute(link: re.Match[str]) -> str:
         view = "raw" if link["image"] else "blob"
-        return (
-            f"{link['image']}[{link['text']}]({repository.rstrip('/')}/{view}/HEAD/{link['path']})"
-        )
+        address = f"{repository.rstrip('/')}/{view}/HEAD/{link['path']}"
+        return f"{link['image']}[{link['text']}]({address})"
 
     return _RELATIVE.sub(absolute, readme)

@@ -1,4 +1,6 @@
-"""Move two cans 0.4 m in a second with the same gripper: one with beer that sloshes, one as rigid as most models.
+"""Move two cans 0.4 m in a second with the same gripper.
+
+One has beer that sloshes, and the other is as rigid as most models.
 
 python examples/carry.py
 """
@@ -9,8 +11,11 @@ import numpy as np
 import mjbeer
 
 CANS = {"beer": mjbeer.standing("beer"), "rigid": mjbeer.standing("beer", modes=0)}
-APART, HEIGHT = 0.2, 0.3  # of the cans, and of the grippers above the table [m]
-DISTANCE, MOVE, AFTER = 0.4, 1.0, 1.5  # [m], [s], [s]
+APART = 0.2  # the distance of the two cans [m]
+HEIGHT = 0.3  # of the grippers above the table [m]
+DISTANCE = 0.4  # how far they move [m]
+MOVE = 1.0  # how long they move [s]
+AFTER = 1.5  # how long they rest afterwards [s]
 TIMESTEP = 1e-3  # [s]
 
 
@@ -36,7 +41,8 @@ def world() -> mujoco.MjModel:
         weld = spec.add_equality(
             name=f"{name}-grip", type=mujoco.mjtEq.mjEQ_WELD, name1=hand.name, name2=held.name
         )
-        weld.objtype, weld.solref = mujoco.mjtObj.mjOBJ_BODY, [2 * TIMESTEP, 1]
+        weld.objtype = mujoco.mjtObj.mjOBJ_BODY
+        weld.solref = [2 * TIMESTEP, 1]
         weld.data[:11] = [0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 1]  # the two origins are at the same place
     return spec.compile()
 
@@ -51,7 +57,8 @@ def forces() -> tuple[np.ndarray, dict[str, np.ndarray]]:
     """Return the times [s], and the level force of each gripper on its can [N]."""
     model = world()
     data = mujoco.MjData(model)
-    times, found = [], {name: [] for name in CANS}
+    times = []
+    found = {name: [] for name in CANS}
     while data.time < MOVE + AFTER:
         for name in CANS:
             data.mocap_pos[model.body(f"{name}-hand").mocapid[0], 0] = place(data.time)
@@ -66,7 +73,6 @@ def forces() -> tuple[np.ndarray, dict[str, np.ndarray]]:
 if __name__ == "__main__":
     times, felt = forces()
     for name, force in felt.items():
+        largest = np.abs(force).max()
         ringing = np.abs(force[times > MOVE + 0.1]).max()
-        print(
-            f"{name}: at most {np.abs(force).max():.3f} N during the move, {ringing:.3f} N after the stop"
-        )
+        print(f"{name}: at most {largest:.3f} N during the move, {ringing:.3f} N after the stop")

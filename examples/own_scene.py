@@ -11,10 +11,8 @@ import numpy as np
 import mjbeer
 
 SCENE = mjbeer.sliding(incline=math.radians(5), fill=0.3, can=mjbeer.Can.sheet_metal())
-PHI0, PHI_DOT0 = (
-    1.0,
-    0.0,
-)  # the start: the angle of the beer's surface to the incline [rad], and its rate [rad/s]
+PHI0 = 1.0  # the start: the angle of the beer's surface to the incline [rad]
+PHI_DOT0 = 0.0  # its rate [rad/s]
 DURATION = 2.0  # [s]
 
 
@@ -23,11 +21,13 @@ def run() -> tuple[np.ndarray, np.ndarray]:
     model = mjbeer.build(SCENE, rolling="equality")
     data = mujoco.MjData(model)
     mjbeer.reset(model, data, SCENE, PHI0, PHI_DOT0)
-    times, phi = [], []
+    times = []
+    phi = []
     for _ in range(round(DURATION / model.opt.timestep)):
         times.append(data.time)
         phi.append(data.joint("roll").qpos[0] + data.joint("swing").qpos[0])
-        # Here is the place for forces of your own, such as data.joint("slide").qfrc_applied[0] = 0.1.
+        # Here is the place for forces of your own, such as
+        # data.joint("slide").qfrc_applied[0] = 0.1.
         mujoco.mj_step(model, data)
     return np.array(times), np.array(phi)
 

@@ -1,19 +1,24 @@
-"""Loads MJCF with other tools, and moves it for a second: `python consumers.py TOOL FILE...` in the tool's own Python.
+"""Loads MJCF with other tools, and moves it for a second.
 
-It prints one JSON object, which has for every file phi [rad] after the second, or the reason why there is none. It
-imports nothing of mjbeer's, which is not installed there.
+`python consumers.py TOOL FILE...` in the tool's own Python prints one JSON object. It has phi [rad]
+after the second for every file, or the reason why there is none. This module imports nothing of
+mjbeer's, which is not installed there.
 """
 
 import json
 import sys
 from collections.abc import Callable, Mapping
+from typing import Any
 
 DURATION = 1.0
 """How long a model is moved [s]."""
 
 
 def phi(positions: Mapping[str, float]) -> float:
-    """Return phi from the positions of the joints by name, which are 0 for joints that a tool has dropped."""
+    """Return phi from the positions of the joints by name.
+
+    A joint that a tool has dropped has the position 0.
+    """
     return positions.get("phi", positions.get("roll", 0.0) + positions.get("swing", 0.0))
 
 
@@ -29,12 +34,10 @@ def with_mujoco(path: str) -> float:
     return phi(by_name(model, data.qpos))
 
 
-def by_name(model: object, qpos: object) -> dict[str, float]:
+def by_name(model: Any, qpos: Any) -> dict[str, float]:
     """Return the positions of the joints of a MuJoCo model by name."""
-    return {
-        model.joint(each).name: float(qpos[model.joint(each).qposadr[0]])
-        for each in range(model.njnt)
-    }  # ty: ignore
+    joints = [model.joint(number) for number in range(model.njnt)]
+    return {joint.name: float(qpos[joint.qposadr[0]]) for joint in joints}
 
 
 def with_dm_control(path: str) -> float:
@@ -45,7 +48,8 @@ def with_dm_control(path: str) -> float:
     physics.reset(keyframe_id=0)
     for _ in range(round(DURATION / physics.timestep())):
         physics.step()
-    names = [physics.model.joint(each).name.split("/")[-1] for each in range(physics.model.njnt)]
+    joints = [physics.model.joint(number) for number in range(physics.model.njnt)]
+    names = [joint.name.split("/")[-1] for joint in joints]
     return phi(dict(zip(names, map(float, physics.data.qpos), strict=True)))
 
 
@@ -66,17 +70,17 @@ def with_mjx_single(path: str) -> float:
     model = mujoco.MjModel.from_xml_path(path)
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, model.key("start").id)
-    device_model, state = mjx.put_model(model), mjx.put_data(model, data)
+    device_model = mjx.put_model(model)
+    state = mjx.put_data(model, data)
+    steps = round(DURATION / model.opt.timestep)
 
-    def step(_: int, before: object) -> object:
-        # A spatial tendon's whole numbers come out with 64 bits, which a loop of JAX's does not accept.
-        return jax.tree.map(
-            lambda old, new: new.astype(old.dtype), before, mjx.step(device_model, before)
-        )
+    def step(_: int, before: Any) -> Any:
+        after = mjx.step(device_model, before)
+        # A spatial tendon's whole numbers come out with 64 bits, which a loop of JAX's does not
+        # accept.
+        return jax.tree.map(lambda old, new: new.astype(old.dtype), before, after)
 
-    move = jax.jit(
-        lambda first: jax.lax.fori_loop(0, round(DURATION / model.opt.timestep), step, first)
-    )
+    move = jax.jit(lambda first: jax.lax.fori_loop(0, steps, step, first))
     return phi(by_name(model, move(state).qpos))
 
 
@@ -91,7 +95,8 @@ def with_warp(path: str) -> float:
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, model.key("start").id)
     mujoco.mj_forward(model, data)
-    device_model, state = mujoco_warp.put_model(model), mujoco_warp.put_data(model, data)
+    device_model = mujoco_warp.put_model(model)
+    state = mujoco_warp.put_data(model, data)
     for _ in range(round(DURATION / model.opt.timestep)):
         mujoco_warp.step(device_model, state)
     return phi(by_name(model, state.qpos.numpy()[0]))
@@ -112,8 +117,10 @@ def attempt(move: Callable[[str], float], path: str) -> float | str:
     try:
         return move(path)
     except Exception as error:
-        return f"{type(error).__name__}: {str(error).strip().splitlines()[0][:120] if str(error).strip() else ''}"
+        lines = str(error).strip().splitlines() or [""]
+        return f"{type(error).__name__}: {lines[0][:120]}"
 
 
 if __name__ == "__main__":
-    print("\n" + json.dumps({path: attempt(TOOLS[sys.argv[1]], path) for path in sys.argv[2:]}))
+    tool = TOOLS[sys.argv[1]]
+    print("\n" + json.dumps({path: attempt(tool, path) for path in sys.argv[2:]}))

@@ -1,7 +1,8 @@
 """Writes what a program can write in the documents anew: `make tables`.
 
-It stands between `<!-- made: NAME -->` and `<!-- end -->`, and `MADE` has what makes it. `docs/stability.json` has the
-counts of a stability study: it is the totals.json that `mjbeer stability` writes.
+It stands between `<!-- made: NAME -->` and `<!-- end -->`, and `MADE` has what makes it.
+`docs/stability.json` has the counts of a stability study: it is the totals.json that
+`mjbeer stability` writes.
 """
 
 import json
@@ -38,7 +39,8 @@ from mjbeer.studies.stability.judge import (
 )
 from mjbeer.studies.validation.validate import checks
 from mjbeer.theory.liquid import LIQUIDS, NAMES, centrifugal_ratio, liquid_in
-from mjbeer.theory.scene import frozen
+from mjbeer.theory.scene import Scene, frozen
+from mjbeer.theory.trajectory import Trajectory
 
 CHECKOUT = pathlib.Path(__file__).parents[1]
 sys.path[:0] = [str(CHECKOUT), str(CHECKOUT / "docs" / "figures")]
@@ -49,12 +51,16 @@ from tests.support import rows  # noqa: E402
 
 DOCUMENTS = [CHECKOUT / "README.md", *sorted(CHECKOUT.glob("docs/*.md"))]
 COUNTS = json.loads((CHECKOUT / "docs" / "stability.json").read_text(encoding="utf-8"))
-BENCHMARK, MAPS = Benchmark.load(SHIPPED), stability_maps.load().maps
+BENCHMARK = Benchmark.load(SHIPPED)
+MAPS = stability_maps.load().maps
 MARKED = re.compile(r"(<!-- made: (?P<name>[\w-]+) -->\n).*?(<!-- end -->)", re.DOTALL)
 LEFT_OUT = ("sliding-metal",)  # it takes as long as the massless can, within 5 %
 PEERS = {"mujoco": "MuJoCo", "scipy": "SciPy", "numba": "numba", "heyoka": "heyoka"}
 """Packages whose versions the benchmark's page has, with their names as their makers write them."""
-GENTLE, USUAL = math.radians(2), math.radians(10)
+GENTLE = math.radians(2)
+"""The incline [rad] of estimates for a real can."""
+USUAL = math.radians(10)
+"""The incline [rad] of the examples."""
 
 
 def anew(text: str) -> str:
@@ -75,7 +81,10 @@ def prose(text: str) -> str:
 
 
 def ratio(name: str, error: float) -> str:
-    """Return the range over all scenes of the run time of another tool divided by mjbeer's, at equal error [rad]."""
+    """Return the run time of another tool divided by mjbeer's, at equal error [rad].
+
+    It is the range of all scenes.
+    """
     return benchmark_tables.ratio_range(BENCHMARK, name, error)
 
 
@@ -88,8 +97,9 @@ def holds() -> str:
         [
             (
                 "**accuracy**",
-                f"{len(checks())} checks, nearly all against exact theory, each with a bound and its reason: at best, "
-                "periods to 1e-12 and trajectories to 1e-10 rad ([validation](docs/validation.md))",
+                f"{len(checks())} checks, nearly all against exact theory, each with a bound and "
+                "its reason: at best, periods to 1e-12 and trajectories to 1e-10 rad "
+                "([validation](docs/validation.md))",
             ),
             (
                 "**run time**",
@@ -102,16 +112,18 @@ def holds() -> str:
             ),
             (
                 "**stability**",
-                f"in gravity the longest stable timesteps are within {border_error():.2g} % of linear theory; "
-                f"{trusted(random):,} of {ended(random):,} new random runs were trusted, and {wrong_of(random)}; "
-                f"{random.get(stability_study.NEEDLESS, 0):,} others were doubted although they were right, and "
-                f"{alone(random):,} were judged by one theory alone ([stability](docs/stability.md))",
+                f"in gravity the longest stable timesteps are within {border_error():.2g} % of "
+                f"linear theory; {trusted(random):,} of {ended(random):,} new random runs were "
+                f"trusted, and {wrong_of(random)}; {random.get(stability_study.NEEDLESS, 0):,} "
+                f"others were doubted although they were right, and {alone(random):,} were judged "
+                "by one theory alone ([stability](docs/stability.md))",
             ),
             (
                 "**the paper**",
-                f"its 61 equations are audited in {len(paper.claims())} rows; {sum(wrong.values())} hold only after a "
-                f"correction: {wrong[MISPRINT]} misprints, {wrong[CONSEQUENCE]} consequences of one, and "
-                f"{wrong[APPROXIMATION]} approximations that leave out too much ([the physics](docs/physics.md))",
+                f"its 61 equations are audited in {len(paper.claims())} rows; "
+                f"{sum(wrong.values())} hold only after a correction: {wrong[MISPRINT]} misprints, "
+                f"{wrong[CONSEQUENCE]} consequences of one, and {wrong[APPROXIMATION]} "
+                "approximations that leave out too much ([the physics](docs/physics.md))",
             ),
         ],
         left=(0, 1),
@@ -126,19 +138,20 @@ def gauss_jackson() -> str:
 
 def misprints() -> str:
     """What is wrong in the paper, and by how much."""
-    found = [(row.equation, row.misprint) for row in paper.claims() if row.misprint]
-    kinds = {MISPRINT: "", CONSEQUENCE: " (follows)", APPROXIMATION: " (approximation)"}
-    lines = [
-        (name, each.about + kinds[each.kind], f"{each.expected_error:.2g}") for name, each in found
-    ]
+    notes = {MISPRINT: "", CONSEQUENCE: " (follows)", APPROXIMATION: " (approximation)"}
+    lines = []
+    for row in paper.claims():
+        wrong = row.misprint
+        if wrong:
+            about = wrong.about + notes[wrong.kind]
+            lines.append((row.equation, about, f"{wrong.expected_error:.2g}"))
     return table(("equation", "what is wrong in it", "its error"), lines, left=(0, 1))
 
 
 def some(shown: Table) -> str:
     """Return a table without the rows that say little more than their neighbours."""
-    return table(
-        shown.columns, [row for row in shown.rows if not any(each in row[0] for each in LEFT_OUT)]
-    )
+    kept = [row for row in shown.rows if not any(name in row[0] for name in LEFT_OUT)]
+    return table(shown.columns, kept)
 
 
 def others() -> str:
@@ -171,8 +184,8 @@ def measured() -> str:
     used = [f"Python {machine['python']}"]
     used += [f"{name} {versions[key]}" for key, name in PEERS.items()]
     return prose(
-        f"It was measured in November 2026 on {machine['cores']} cores of an {machine['processor']}, "
-        f"of which a run uses one, with {', '.join(used)}."
+        f"It was measured in November 2026 on {machine['cores']} cores of an "
+        f"{machine['processor']}, of which a run uses one, with {', '.join(used)}."
     )
 
 
@@ -181,26 +194,33 @@ def ranges() -> str:
     finest = benchmark_tables.FINEST
     return prose(
         f"On the same model MuJoCo's RK4 takes {ratio(RK4, 1e-3)} times as long as mjbeer's best "
-        f"setting for an error of 1e-3 rad, and {ratio(RK4, 1e-6)} times for 1e-6 rad. For 1e-11 rad "
-        f"it takes {ratio(RK4, finest)} times as long; that is what order 4 costs against order 13, "
-        "and matters to nobody who needs three digits. Without MuJoCo, DOP853 on compiled equations "
-        f"takes {ratio(COMPILED_DOP853, 1e-3)} times as long as mjbeer's best setting for 1e-3 rad, "
-        f"and {ratio(COMPILED_DOP853, 1e-6)} times for 1e-6 rad; heyoka takes {ratio(HEYOKA, 1e-3)} "
-        f"and {ratio(HEYOKA, 1e-6)} times as long; SciPy's odeint takes {ratio(ODEINT, 1e-3)} and "
-        f"{ratio(ODEINT, 1e-6)} times."
+        f"setting for an error of 1e-3 rad, and {ratio(RK4, 1e-6)} times for 1e-6 rad. "
+        f"For 1e-11 rad it takes {ratio(RK4, finest)} times as long; that is what order 4 costs "
+        "against order 13, and matters to nobody who needs three digits. "
+        "Without MuJoCo, DOP853 on compiled equations takes "
+        f"{ratio(COMPILED_DOP853, 1e-3)} times as long as mjbeer's best setting for 1e-3 rad, "
+        f"and {ratio(COMPILED_DOP853, 1e-6)} times for 1e-6 rad; "
+        f"heyoka takes {ratio(HEYOKA, 1e-3)} and {ratio(HEYOKA, 1e-6)} times as long; "
+        f"SciPy's odeint takes {ratio(ODEINT, 1e-3)} and {ratio(ODEINT, 1e-6)} times."
     )
 
 
 def stable_slip(integrator: str) -> float:
-    """Return the largest h/timeconst with a bounded friction row of impedance 1, which has a damping and no stiffness:
-    1 under semi-implicit Euler, half of the limit on the negative real axis under a Runge-Kutta method."""
+    """Return the largest h/timeconst with a bounded friction row of impedance 1.
+
+    Such a row has a damping and no stiffness. The limit is 1 under semi-implicit Euler, and half of
+    the limit on the negative real axis under a Runge-Kutta method.
+    """
+    if integrator == "discrete":
+        return math.inf
     if integrator not in predictions.RUNGE_KUTTA:
-        return math.inf if integrator == "discrete" else 1.0
+        return 1.0
     coefficients = predictions.polynomial(integrator)[::-1]
-    return (
-        predictions.first(lambda rate: abs(float(np.polyval(coefficients, -rate))) - 1, 0.1, 50.0)
-        / 2
-    )
+
+    def growth(rate: float) -> float:
+        return abs(float(np.polyval(coefficients, -rate))) - 1
+
+    return predictions.first(growth, 0.1, 50.0) / 2
 
 
 def steps() -> str:
@@ -210,79 +230,88 @@ def steps() -> str:
     def spring(method: str) -> float:
         return math.inf if method == "discrete" else predictions.stable_limit(method)
 
+    def underdamped(method: str) -> float:
+        return rows.stable_ratio(method, 0.1)
+
+    def direct(method: str) -> float:
+        return rows.stable_timestep(method, predictions.direct(1.0, 2.0, 0.9))
+
     bounded: dict[str, Callable[[str], float]] = {
         "swing by gravity: ωh below": predictions.stable_limit,
         "swing by a joint's spring: ωh below": spring,
         "equality, ζ = 1: h/τ below": rows.stable_ratio,
-        "equality, ζ = 0.1: h/τ below": lambda method: rows.stable_ratio(method, 0.1),
+        "equality, ζ = 0.1: h/τ below": underdamped,
         "friction of a contact: h/τ below": stable_slip,
-        "direct `solref`, B = 2√K: h√K below": lambda method: rows.stable_timestep(
-            method, predictions.direct(1.0, 2.0, 0.9)
-        ),
+        "direct `solref`, B = 2√K: h√K below": direct,
         "swing within 1 % for ten periods: ωh below": predictions.accurate_limit,
     }
-    lines = [
-        (
-            name,
-            *(
-                "no limit" if (most := limit(each)) == math.inf else f"{most:.2g}"
-                for each in methods
-            ),
-        )
-        for name, limit in bounded.items()
-    ]
-    return table(
-        ("", "Euler, implicit, implicitfast", "discrete", "RK4", "DOP853 around MuJoCo"), lines
-    )
+    lines = []
+    for name, limit in bounded.items():
+        longest = [limit(method) for method in methods]
+        cells = ["no limit" if math.isinf(most) else f"{most:.2g}" for most in longest]
+        lines.append((name, *cells))
+    columns = ("", "Euler, implicit, implicitfast", "discrete", "RK4", "DOP853 around MuJoCo")
+    return table(columns, lines)
 
 
 def agreement() -> str:
     """How the maps came out, and how near their borders in gravity are to the limit of a swing."""
-    maps = [each for each in MAPS if each.family != "damping"]
+    maps = [drawn for drawn in MAPS if drawn.family != "damping"]
     runs, _ = stability_maps.summary(maps)
     return prose(
-        f"{len(maps)} maps of timestep and stiffness, {runs:,} short runs in all, agree with this. In gravity the "
-        f"border was found by bisection, and the longest stable timestep is within {border_error():.2g} % "
-        "of the limit of ωh."
+        f"{len(maps)} maps of timestep and stiffness, {runs:,} short runs in all, agree with this. "
+        "In gravity the border was found by bisection, and the longest stable timestep is within "
+        f"{border_error():.2g} % of the limit of ωh."
     )
 
 
 def border_error() -> float:
     """Return how far measured borders in gravity are from the limit of a swing [%], at worst."""
     worst = 0.0
-    for each in MAPS:
-        for value, (border, _) in zip(each.values, each.boundaries, strict=True):
+    for drawn in MAPS:
+        if drawn.family != "gravity":
+            continue
+        limit = predictions.stable_limit(drawn.integrator)
+        for value, (border, _) in zip(drawn.values, drawn.boundaries, strict=True):
             # At the shortest timestep there is no border to measure: all runs explode.
-            if each.family == "gravity" and border and border > each.timesteps[0]:
-                limit = predictions.stable_limit(each.integrator)
-                worst = max(worst, abs(border * frozen(0.0, gravity=value).frequency() / limit - 1))
+            if border and border > drawn.timesteps[0]:
+                frequency = frozen(0.0, gravity=value).frequency()
+                worst = max(worst, abs(border * frequency / limit - 1))
     return 100 * worst
 
 
 def damped() -> str:
     """How damped runs of a millisecond a step end, by damping."""
-    words = "explodes", "inaccurate", "accurate"
-    dampings, lines = (0.01, 0.1, 1.0), []
-    for of in (each for each in MAPS if each.family == "damping"):
-        step = min(range(len(of.timesteps)), key=lambda at: abs(math.log(of.timesteps[at] / 1e-3)))
-        values = [
-            min(of.values, key=lambda value: abs(math.log(value / damping))) for damping in dampings
-        ]
-        ended = (words[int(of.measured[of.values.index(value)][step])] for value in values)
-        lines.append((of.integrator, *ended))
-    return table(
-        ("1 ms", *(f"{damping:g} N m s" for damping in dampings)), lines, left=(0, 1, 2, 3)
-    )
+    words = ("explodes", "inaccurate", "accurate")
+    dampings = (0.01, 0.1, 1.0)
+    lines = []
+    for drawn in MAPS:
+        if drawn.family != "damping":
+            continue
+        column = nearest(drawn.timesteps, 1e-3)
+        rows_shown = [drawn.measured[nearest(drawn.values, damping)] for damping in dampings]
+        lines.append((drawn.integrator, *(words[int(row[column])] for row in rows_shown)))
+    columns = ("1 ms", *(f"{damping:g} N m s" for damping in dampings))
+    return table(columns, lines, left=(0, 1, 2, 3))
+
+
+def nearest(values: Sequence[float], wanted: float) -> int:
+    """Return the index of the value whose ratio to another one is nearest to 1."""
+    distances = [abs(math.log(value / wanted)) for value in values]
+    return distances.index(min(distances))
 
 
 def damped_runs() -> str:
     """How the runs in the maps of damping ended."""
-    maps = [each for each in MAPS if each.family == "damping"]
-    count = Counter("".join("".join(each.measured) for each in maps))
+    maps = [drawn for drawn in MAPS if drawn.family == "damping"]
+    count: Counter[str] = Counter()
+    for drawn in maps:
+        count.update("".join(drawn.measured))
     _, worst = stability_maps.summary(maps)
     return prose(
-        f"Of {count.total():,} runs in these maps {count['0']:,} explode, {count['1']:,} are inaccurate and "
-        f"{count['2']:,} accurate. The borders between them agree with linear theory within {100 * worst:.2g} %."
+        f"Of {count.total():,} runs in these maps {count['0']:,} explode, {count['1']:,} are "
+        f"inaccurate and {count['2']:,} accurate. "
+        f"The borders between them agree with linear theory within {100 * worst:.2g} %."
     )
 
 
@@ -302,7 +331,8 @@ def wrong_of(count: dict[str, int]) -> str:
     found = f"{count.get(UNDETECTED_ERROR, 0)} of these were wrong"
     if share is None:
         return found
-    return f"{found} (with 95 % confidence at most {stability_study.rounded_up(100 * share)} % of trusted runs are)"
+    percent = stability_study.rounded_up(100 * share)
+    return f"{found} (with 95 % confidence at most {percent} % of trusted runs are)"
 
 
 def alone(count: dict[str, int]) -> int:
@@ -313,10 +343,9 @@ def alone(count: dict[str, int]) -> int:
 def kinds() -> str:
     """How the random runs ended, by kind of model, and what judged them."""
     counted = stability_study.Totals(COUNTS["known"], COUNTS["kinds"])
-    shown = next(
-        each for each in stability_study.search_tables(counted) if "by model" in each.title
-    )
-    left_out = NOBODY, BOTH, SERIES, stability_study.ABOVE, stability_study.TWICE
+    tables = stability_study.search_tables(counted)
+    (shown,) = [found for found in tables if "by model" in found.title]
+    left_out = (NOBODY, BOTH, SERIES, stability_study.ABOVE, stability_study.TWICE)
     columns = [at for at, name in enumerate(shown.columns) if name not in left_out]
     return table(
         tuple(shown.columns[at] for at in columns),
@@ -325,87 +354,132 @@ def kinds() -> str:
 
 
 def honesty() -> str:
-    """How many runs were silent, and what that allows; how often a run doubted itself, or its error, wrongly."""
-    found, known = COUNTS["kinds"]["all"], COUNTS["known"]
+    """How many runs were silent, and what that allows.
+
+    Then how often a run doubted itself, or its error, wrongly.
+    """
+    found = COUNTS["kinds"]["all"]
+    known = COUNTS["known"]
     first = COUNTS["settings"][stability_study.FIRST]
-    needless, above, twice = stability_study.NEEDLESS, stability_study.ABOVE, stability_study.TWICE
+    needless = found.get(stability_study.NEEDLESS, 0)
+    above = found.get(stability_study.ABOVE, 0)
+    twice = found.get(stability_study.TWICE, 0)
     outside = ended(COUNTS["kinds"].get(stability_study.OUTSIDE, {}))
     refused = f"{found.get(REFUSED, 0):,} were refused"
     if outside:
         refused += f", {outside:,} of them because they are outside the domain"
     return prose(
-        f"{ended(found):,} random runs, with the numbers from {first} on, ended like this: {trusted(found):,} were "
-        f"trusted, and {wrong_of(found)}. {found.get(WARNED, 0):,} were doubted, {found.get(needless, 0):,} of them "
-        f"although their samples were right, and {refused}. {alone(found):,} were judged "
-        f"by one theory alone, and {found.get(NOBODY, 0)} by none. {found.get(above, 0)} of the trusted runs had an "
-        f"error above its estimate, {found.get(twice, 0)} of them above twice the estimate. Of {ended(known):,} runs "
-        f"of known cases {trusted(known):,} were trusted, and {known.get(UNDETECTED_ERROR, 0)} of these were wrong."
+        f"{ended(found):,} random runs, with the numbers from {first} on, ended like this: "
+        f"{trusted(found):,} were trusted, and {wrong_of(found)}. "
+        f"{found.get(WARNED, 0):,} were doubted, {needless:,} of them although their samples were "
+        f"right, and {refused}. "
+        f"{alone(found):,} were judged by one theory alone, and {found.get(NOBODY, 0)} by none. "
+        f"{above} of the trusted runs had an error above its estimate, {twice} of them above twice "
+        "the estimate. "
+        f"Of {ended(known):,} runs of known cases {trusted(known):,} were trusted, and "
+        f"{known.get(UNDETECTED_ERROR, 0)} of these were wrong."
     )
 
 
 def speeds() -> str:
-    """Terminal speeds of liquids in the model of one lump, in brackets where the model does not hold."""
+    """Terminal speeds of liquids in the model of one lump.
+
+    They are in brackets where the model does not hold.
+    """
+    columns = (
+        "at 20 °C",
+        "density [kg/m³]",
+        "ν [m²/s]",
+        "at 2° [m/s]",
+        "at 10° [m/s]",
+        "Reynolds number",
+        "at the wall [g]",
+        "film could hold",
+    )
     lines = []
     for name in NAMES:
         used = liquid_in(name, USUAL)
-        cells = []
-        for incline in (GENTLE, USUAL):
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore", LiquidWarning)
-                scene = liquid(name, incline)
-            speed = scene.terminal_speed()
-            within = (
-                centrifugal_ratio(scene, speed) < 1 and liquid_in(name, incline).carried < 1 / 3
-            )
-            cells.append(f"{speed:.2g}" if within else f"({speed:.2g})")
-        arc = math.pi * scene.can.radius
-        lines.append((
-            name, f"{LIQUIDS[name].density:.4g}", f"{LIQUIDS[name].viscosity:.2g}", *cells,
-            f"{speed * arc / used.viscosity:.2g}", f"{speed**2 / (scene.can.radius * scene.gravity):.2g}",
+        scene = without_doubts(name, USUAL)
+        radius = scene.can.radius
+        speed = scene.terminal_speed()
+        cells = (
+            name,
+            f"{LIQUIDS[name].density:.4g}",
+            f"{LIQUIDS[name].viscosity:.2g}",
+            terminal_speed(name, GENTLE),
+            terminal_speed(name, USUAL),
+            f"{speed * math.pi * radius / used.viscosity:.2g}",
+            f"{speed**2 / (radius * scene.gravity):.2g}",
             f"{100 * used.carried:.0f} %",
-        ))  # fmt: skip
-    return table(
-        ("at 20 °C", "density [kg/m³]", "ν [m²/s]", "at 2° [m/s]", "at 10° [m/s]", "Reynolds number", "at the wall [g]",
-         "film could hold"),
-        lines,
-    )  # fmt: skip
+        )
+        lines.append(cells)
+    return table(columns, lines)
+
+
+def without_doubts(name: str, incline: float) -> Scene:
+    """Return a can with a liquid on an `incline` [rad], and do not say whether its model holds."""
+    with warnings.catch_warnings(action="ignore", category=LiquidWarning):
+        return liquid(name, incline)
+
+
+def terminal_speed(name: str, incline: float) -> str:
+    """Return a liquid's terminal speed [m/s] as text, in brackets where the model does not hold."""
+    scene = without_doubts(name, incline)
+    speed = scene.terminal_speed()
+    is_below = centrifugal_ratio(scene, speed) < 1
+    is_one_lump = liquid_in(name, incline).carried < 1 / 3
+    return f"{speed:.2g}" if is_below and is_one_lump else f"({speed:.2g})"
 
 
 def metre() -> str:
-    """Mean accelerations over the first metre, over g sin(alpha), with their spread."""
+    """Mean accelerations over the first metre, divided by g sin(alpha), with their spread."""
+    columns = (
+        "water [mL]",
+        "depth [mm]",
+        "no friction",
+        "friction",
+        "friction doubled to halved",
+        "with air",
+        "model holds for",
+    )
     lines = []
     for volume in (1.0, 6.0, 10.0, 50.0, 177.0, 350.0):
         free = real_beer.water_in(volume, GENTLE, friction=0.0)
-        runs = []
-        for friction, drag in (
-            (1.0, 0.0),
-            (1 / real_beer.SPREAD, 0.0),
-            (real_beer.SPREAD, 0.0),
-            (1.0, real_beer.DRAG),
-        ):
-            scene = real_beer.water_in(volume, GENTLE, friction, drag)
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore", LiquidWarning)
-                runs.append(real_beer.let_go(scene, real_beer.times_of(scene)))
-        usual, least, most, air = (f"{real_beer.over_first_metre(run):.2f}" for run in runs)
-        none = free.acceleration() / (free.gravity * math.sin(GENTLE))
         depth = 2e3 * (free.load.fill or 0) * free.can.radius
-        until = real_beer.lump_until(runs[0])
-        lines.append((f"{volume:g}", f"{depth:.2g}", f"{none:.2f}", usual, f"{most} to {least}", air,
-                      "the whole metre" if until > 1 else f"{until:.1f} m"))  # fmt: skip
-    return table(
-        ("water [mL]", "depth [mm]", "no friction", "friction", "friction doubled to halved", "with air",
-         "model holds for"),
-        lines,
-    )  # fmt: skip
+        none = free.acceleration() / (free.gravity * math.sin(GENTLE))
+        usual = with_water(volume)
+        halved = with_water(volume, friction=1 / real_beer.SPREAD)
+        doubled = with_water(volume, friction=real_beer.SPREAD)
+        in_air = with_water(volume, drag=real_beer.DRAG)
+        until = real_beer.lump_until(usual)
+        cells = (
+            f"{volume:g}",
+            f"{depth:.2g}",
+            f"{none:.2f}",
+            f"{real_beer.over_first_metre(usual):.2f}",
+            f"{real_beer.over_first_metre(doubled):.2f} to "
+            f"{real_beer.over_first_metre(halved):.2f}",
+            f"{real_beer.over_first_metre(in_air):.2f}",
+            "the whole metre" if until > 1 else f"{until:.1f} m",
+        )
+        lines.append(cells)
+    return table(columns, lines)
 
 
-_OF_THE_BENCHMARK = others, whole_calls, ranges, measured, long_run, contact
-_OF_STABILITY = steps, agreement, damped, damped_runs, kinds, honesty
-MADE = {
-    each.__name__.replace("_", "-"): each
-    for each in (holds, misprints, gauss_jackson, *_OF_THE_BENCHMARK, *_OF_STABILITY, speeds, metre)
-}
+def with_water(volume: float, friction: float = 1.0, drag: float = 0.0) -> Trajectory:
+    """Return the first metre of a can with a `volume` [mL] of water on the gentle incline."""
+    scene = real_beer.water_in(volume, GENTLE, friction, drag)
+    with warnings.catch_warnings(action="ignore", category=LiquidWarning):
+        return real_beer.let_go(scene, real_beer.times_of(scene))
+
+
+_OF_THE_PAPER = (holds, misprints)
+_OF_THE_BENCHMARK = (others, whole_calls, ranges, measured, long_run, contact)
+_OF_STABILITY = (steps, agreement, damped, damped_runs, kinds, honesty)
+_OF_REAL_BEER = (speeds, metre)
+_ALL = (*_OF_THE_PAPER, gauss_jackson, *_OF_THE_BENCHMARK, *_OF_STABILITY, *_OF_REAL_BEER)
+MADE = {made.__name__.replace("_", "-"): made for made in _ALL}
+"""What makes the text between two marks, by their name."""
 
 if __name__ == "__main__":
     for document in DOCUMENTS:

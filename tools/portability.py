@@ -1,6 +1,7 @@
-"""Other tools that load MJCF, each in a virtual environment of its own: `python -m tools.portability` measures all.
+"""Other tools that load MJCF, each in a virtual environment of its own.
 
-The environments are in build/others, which git ignores, and stay there: the first run downloads about 1.5 GB.
+`python -m tools.portability` measures all. The environments are in build/others, which git ignores,
+and stay there: the first run downloads about 1.5 GB.
 """
 
 import json
@@ -23,12 +24,16 @@ from tests.support.scenes import SCENES
 CHECKOUT = pathlib.Path(__file__).parents[1]
 ENVIRONMENTS = CHECKOUT / "build" / "others"
 START = 1.0, 0.5
-"""phi [rad] and its rate [rad/s] at the start, on the way through more than half a swing in a second."""
+"""phi [rad] and its rate [rad/s] at the start: more than half a swing follows in a second."""
 FRICTION = 10.0
 """With less, the hoop would slip."""
-_TIMESTEP, _HOOP = 1e-3, 2.5e-4
-"""Timesteps [s]: the default, and for the hoop, which passes its bottom at 47 rad/s, that of its template."""
+_TIMESTEP = 1e-3
+"""The timestep [s] by default."""
+_HOOP_TIMESTEP = 2.5e-4
+"""The timestep [s] of the hoop's template, as the hoop passes its bottom at 47 rad/s."""
 _CONSUMERS = pathlib.Path(__file__).parent / "consumers.py"
+_QUIETLY = ("--quiet", "--disable-pip-version-check")
+_PIP_INSTALL = ("-m", "pip", "install", *_QUIETLY, "--only-binary=:all:")
 
 
 @dataclass(frozen=True)
@@ -52,28 +57,18 @@ class Other:
         if not self.requirements:
             return sys.executable
         folder = ENVIRONMENTS / self.name.replace(" ", "-")
-        program, stamp = folder / "bin" / "python", folder / "installed.txt"
+        program = folder / "bin" / "python"
+        stamp = folder / "installed.txt"
         ENVIRONMENTS.mkdir(parents=True, exist_ok=True)
         with FileLock(f"{folder}.lock"):  # several processes may run the tests
             if not stamp.exists() or stamp.read_text() != "\n".join(self.requirements):
                 subprocess.run([sys.executable, "-m", "venv", "--clear", folder], check=True)
-                pip = [
-                    program,
-                    "-m",
-                    "pip",
-                    "install",
-                    "--quiet",
-                    "--disable-pip-version-check",
-                    "--only-binary=:all:",
-                ]
-                ran = subprocess.run(
-                    [*pip, *self.requirements], capture_output=True, text=True, check=False
-                )
+                words = [program, *_PIP_INSTALL, *self.requirements]
+                ran = subprocess.run(words, capture_output=True, text=True, check=False)
                 if ran.returncode:
                     shutil.rmtree(folder)
-                    raise AbsentError(
-                        f"pip cannot install {self.name}: {ran.stderr.strip().splitlines()[-1]}"
-                    )
+                    reason = ran.stderr.strip().splitlines()[-1]
+                    raise AbsentError(f"pip cannot install {self.name}: {reason}")
                 stamp.write_text("\n".join(self.requirements))
         return str(program)
 
@@ -83,8 +78,12 @@ class AbsentError(Exception):
 
 
 OLDEST = "3.3.4"
-"""The oldest MuJoCo that loads portable exports: those before do not know the camera that a viewer begins with."""
-# MJX 3.3 calls a function of JAX's with an argument that JAX has not had since; MJX's JAX is that of its time.
+"""The oldest MuJoCo that loads portable exports.
+
+Those before do not know the camera that a viewer begins with.
+"""
+# MJX 3.3 calls a function of JAX's with an argument that JAX has not had since, so that it needs
+# the JAX of its time.
 _MJX = "mujoco==3.3.*", "mujoco-mjx==3.3.*", "jax==0.8.0", "jaxlib==0.8.0"
 OTHERS = (
     Other("MuJoCo 4", (), "mujoco"),
@@ -98,17 +97,17 @@ BY_NAME = {other.name: other for other in OTHERS}
 
 
 def wanted() -> list[str]:
-    """Return the names in the environment's MJBEER_OTHERS, which are separated by commas; "all" is all of them.
+    """Return the names in the environment's MJBEER_OTHERS.
+
+    They are separated by commas there; "all" is all of them.
 
     Raises:
       ValueError: if a name is unknown.
     """
     text = os.environ.get("MJBEER_OTHERS", "")
-    names = (
-        list(BY_NAME)
-        if text == "all"
-        else [name.strip() for name in text.split(",") if name.strip()]
-    )
+    if text == "all":
+        return list(BY_NAME)
+    names = [name.strip() for name in text.split(",") if name.strip()]
     if unknown := [name for name in names if name not in BY_NAME]:
         raise ValueError(
             f"MJBEER_OTHERS names {unknown[0]!r}; allowed are all, or some of {', '.join(BY_NAME)}"
@@ -118,7 +117,7 @@ def wanted() -> list[str]:
 
 def timestep(name: str) -> float:
     """Return the timestep [s] for a scene by its name."""
-    return _HOOP if name == "hoop" else _TIMESTEP
+    return _HOOP_TIMESTEP if name == "hoop" else _TIMESTEP
 
 
 def cases() -> list[tuple[str, Rolling]]:
@@ -146,26 +145,37 @@ def errors(other: Other, portable: bool = True) -> dict[tuple[str, str], float |
     with tempfile.TemporaryDirectory() as folder:
         paths = {}
         for number, (name, rolling) in enumerate(cases()):
-            path = paths[name, rolling] = pathlib.Path(folder) / f"{number}.xml"
-            scene, step = SCENES[name], timestep(name)
+            path = pathlib.Path(folder) / f"{number}.xml"
             export(
-                scene, path, *START, rolling, timestep=step, friction=FRICTION, portable=portable
+                SCENES[name],
+                path,
+                *START,
+                rolling,
+                timestep=timestep(name),
+                friction=FRICTION,
+                portable=portable,
             )
-        words = [python, _CONSUMERS, other.word, *paths.values()]
-        env = {**os.environ, "JAX_PLATFORMS": "cpu", "MUJOCO_GL": "disable"}
+            paths[name, rolling] = path
         ran = subprocess.run(
-            words, capture_output=True, text=True, check=False, env=env, cwd=folder
+            [python, _CONSUMERS, other.word, *paths.values()],
+            capture_output=True,
+            text=True,
+            check=False,
+            env={**os.environ, "JAX_PLATFORMS": "cpu", "MUJOCO_GL": "disable"},
+            cwd=folder,
         )
     if ran.returncode:  # some tools end the process instead of raising an error
         last = ran.stderr.strip().splitlines()[-1]
         return dict.fromkeys(paths, f"it ends with {last[-120:]}")
-    found = json.loads(ran.stdout.splitlines()[-1])
-    return {
-        (name, rolling): value
-        if isinstance(value := found[str(path)], str)
-        else abs(value - final_phi(SCENES[name]))
-        for (name, rolling), path in paths.items()
-    }
+    told = json.loads(ran.stdout.splitlines()[-1])
+    found: dict[tuple[str, str], float | str] = {}
+    for (name, rolling), path in paths.items():
+        value = told[str(path)]
+        if isinstance(value, str):
+            found[name, rolling] = value
+        else:
+            found[name, rolling] = abs(value - final_phi(SCENES[name]))
+    return found
 
 
 def row(other: Other, portable: bool) -> str:
@@ -193,17 +203,15 @@ def row(other: Other, portable: bool) -> str:
 
 
 def main() -> None:
-    """Print a table of all tools, or of those in MJBEER_OTHERS, with portable exports and with ordinary ones."""
+    """Print a table of portable exports and one of ordinary ones.
+
+    Each has a row for every tool, or for those in MJBEER_OTHERS.
+    """
+    columns = [f"{kind}, {rolling}" for kind in ("sliding", "frozen") for rolling in ROLLINGS]
     for portable in (True, False):
-        print(
-            f"\n{'portable' if portable else 'ordinary'} exports: largest error of phi after 1 s [rad]"
-        )
-        print(
-            "| tool | "
-            + " | ".join(
-                f"{kind}, {rolling}" for kind in ("sliding", "frozen") for rolling in ROLLINGS
-            )
-        )
+        exports = "portable" if portable else "ordinary"
+        print(f"\n{exports} exports: largest error of phi after 1 s [rad]")
+        print(f"| tool | {' | '.join(columns)}")
         for name in wanted() or BY_NAME:
             print(row(BY_NAME[name], portable), flush=True)
 

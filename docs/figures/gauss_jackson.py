@@ -1,4 +1,7 @@
-"""Draws what Gauss-Jackson gains: `python docs/figures/gauss_jackson.py` writes gauss-jackson.svg."""
+"""Draws what Gauss-Jackson gains.
+
+`python docs/figures/gauss_jackson.py` writes gauss-jackson.svg.
+"""
 
 import pathlib
 from collections.abc import Callable
@@ -100,7 +103,10 @@ def step_ends(scene: Scene, timestep: float, end: float) -> np.ndarray:
 
 
 def rows() -> list[tuple[str, ...]]:
-    """Return by how many times DOP853 needs more evaluations for each of the `ERRORS`, scene by scene, as texts."""
+    """Return how many times as many evaluations DOP853 needs for each of the `ERRORS`.
+
+    There is a row of texts for each scene, which begins with the scene's name.
+    """
     texts = []
     for name, scene in SCENES.items():
         runge_kutta, multistep = costs(scene)

@@ -1,6 +1,7 @@
-"""Draws real liquids, which neither slide freely nor are frozen, beside this file: `python docs/figures/real_beer.py`.
+"""Draws real liquids, which neither slide freely nor are frozen, beside this file.
 
-This is what footnote 4 of the paper leaves open; `docs/real_beer.md` explains it.
+This is what footnote 4 of the paper leaves open; `docs/real_beer.md` explains it. Run it as
+`python docs/figures/real_beer.py`.
 """
 
 import functools
@@ -8,6 +9,7 @@ import math
 import pathlib
 
 import numpy as np
+from matplotlib.axes import Axes
 from scipy.interpolate import CubicHermiteSpline
 from scipy.optimize import brentq
 
@@ -20,26 +22,42 @@ from mjbeer.theory.scene import GRAVITY, INCLINE, Scene, frozen, sliding
 from mjbeer.theory.trajectory import Trajectory, exact
 
 CAN = Can.sheet_metal(thickness=THICKNESS * 0.013 / Can.sheet_metal().mass)
-"""A 12-oz can of 13 g, as they are sold: one of a sheet of 0.1 mm would have 8.6 g, but real ends are thicker."""
+"""A 12-oz can of 13 g, as they are sold.
+
+One of a sheet of 0.1 mm would have 8.6 g, but real ends are thicker.
+"""
 DRAG = 1.1 * 1.2 * 2 * CAN.radius * CAN.length / 2
-"""Drag of the air [kg/m], C_d rho A/2, with the handbooks' C_d = 1.1 of a cylinder across the stream, 1.2 kg/m^3, and
-the can seen from the front. Neither the nearby incline nor the can's rotation are in it."""
+"""Drag of the air [kg/m], C_d rho A/2.
+
+C_d = 1.1 is the handbooks' of a cylinder across the stream, rho is 1.2 kg/m^3, and A is that of the
+can seen from the front. Neither the nearby incline nor the can's rotation are in it.
+"""
 TOLERANCE = 1e-6
 """Tolerance [rad] of the simulations. It moves no mean acceleration by 1e-6 of itself."""
 _WAY = 1.0
 """Length of Jackson's and of our incline [m]."""
 _SLOWEST = 0.25
-"""An acceleration over g sin(alpha) below all that occur: how long a run must at least take."""
+"""An acceleration, divided by g sin(alpha), below all that occur: it tells how long to run."""
 _INCLINES = (2.0, 5.0, 10.0)
+"""[degrees]"""
 _VOLUMES = np.geomspace(1.0, 350, 61)
+"""Volumes of water [mL] of the lines."""
 _FEW = (1.0, 2.0, 10.0, 50.0, 177.0, 350.0)
-"""Volumes of water [mL]: of the lines, and of the points of exact theory."""
+"""Volumes of water [mL] of the points of exact theory."""
 _ROSCH = 10.0
 """Volume [mL] near which Rosch (The College of Wooster, 2006) saw a can accelerate less."""
 SPREAD = 2.0
-"""Factor by which the friction may be wrong in the estimates: it is divided and multiplied by it."""
+"""Factor by which the friction may be wrong: the estimates divide and multiply it by this."""
 _SURFACE_TENSION = 0.0728
 """Surface tension of water at 20 degrees Celsius [N/m]; IAPWS."""
+_BEYOND = {"color": COLOURS[0], "linestyle": ":", "linewidth": 1.3}
+"""Look of motions in which the wall's centrifugal acceleration exceeds g cos(alpha)."""
+_TOO_FAST = "beyond the model: too fast for the liquid to stay below"
+"""Their name."""
+_POINTS = {"color": "black", "linestyle": "", "marker": ".", "markersize": 4}
+"""Look of points of exact theory."""
+_PAINTS = (GREY, COLOURS[0], COLOURS[4], COLOURS[2], COLOURS[1], COLOURS[3], COLOURS[5])
+"""Colours of no friction, of the liquids from thin to thick, and of ice."""
 
 
 def water_in(volume: float, incline: float, friction: float = 1.0, drag: float = 0.0) -> Scene:
@@ -48,21 +66,24 @@ def water_in(volume: float, incline: float, friction: float = 1.0, drag: float =
     `friction` is a factor of the water's torque; with 0 there is none.
     """
     area = 1e-6 * volume / (CAN.radius**2 * CAN.length)
-    half_angle = float(
-        brentq(lambda beta: beta - math.sin(2 * beta) / 2 - area, 0, math.pi, xtol=1e-15)
-    )
+
+    def excess(beta: float) -> float:
+        return beta - math.sin(2 * beta) / 2 - area
+
+    half_angle = float(brentq(excess, 0, math.pi, xtol=1e-15))
     fill = math.sin(half_angle / 2) ** 2
+    density = LIQUIDS["water"].density
+    if not friction:
+        return sliding(incline, fill, CAN, density, drag=drag)
     own = liquid_in("water", incline, fill, CAN).damping
-    damping = (
-        Damping(friction * own.linear, friction * own.quadratic, valid_rates=own.valid_rates)
-        if friction
-        else 0.0
-    )
-    return sliding(incline, fill, CAN, LIQUIDS["water"].density, damping=damping, drag=drag)
+    linear = friction * own.linear
+    quadratic = friction * own.quadratic
+    damping = Damping(linear, quadratic, valid_rates=own.valid_rates)
+    return sliding(incline, fill, CAN, density, damping=damping, drag=drag)
 
 
 def capillary_length() -> float:
-    """Return the depth [m] below which surface tension shapes a puddle of water more than gravity does."""
+    """Return the depth [m] below which surface tension shapes a puddle more than gravity does."""
     return math.sqrt(_SURFACE_TENSION / (LIQUIDS["water"].density * GRAVITY))
 
 
@@ -72,10 +93,10 @@ def puddle(depth: float) -> float:
 
 
 def over_first_metre(motion: Trajectory) -> float:
-    """Return the mean acceleration 2 (1 m)/t^2 over the first metre from rest, over g sin(alpha).
+    """Return the mean acceleration 2 (1 m)/t^2 over the first metre, divided by g sin(alpha).
 
-    t is the time after which the axis has moved by a metre; between the samples it is found on the cubic through both
-    positions and speeds.
+    t is the time after which the axis has moved by a metre from rest. Between the samples it is
+    found on the cubic through both positions and speeds.
     """
     way = motion.u - motion.u[0]
     after = int(np.argmax(way > _WAY))
@@ -85,9 +106,10 @@ def over_first_metre(motion: Trajectory) -> float:
 
 
 def lump_until(motion: Trajectory) -> float:
-    """Return how far a can has come [m] when its wall's centrifugal acceleration first exceeds g cos(alpha).
+    """Return how far a can has come [m] when its liquid need no longer stay below as one lump.
 
-    From there on the liquid need not stay at the bottom as one lump. It is infinite for a can that stays slower.
+    That is when the wall's centrifugal acceleration first exceeds g cos(alpha). It is infinite for
+    a can that stays slower.
     """
     fast = np.flatnonzero(centrifugal_ratio(motion.scene, motion.u_dot) > 1)
     return float(motion.u[fast[0]] - motion.u[0]) if fast.size else math.inf
@@ -100,7 +122,10 @@ def times_of(scene: Scene) -> np.ndarray:
 
 
 def let_go(scene: Scene, times: np.ndarray) -> Trajectory:
-    """Return the motion, by MuJoCo, of a can that is let go at rest with a level surface: phi = -alpha."""
+    """Return the motion, by MuJoCo, of a can that is let go at rest with a level surface.
+
+    It begins with phi = -alpha.
+    """
     return simulate(scene, times[-1], -scene.incline, tolerance=TOLERANCE, times=times)
 
 
@@ -108,149 +133,144 @@ def let_go(scene: Scene, times: np.ndarray) -> Trajectory:
 def _simulated(
     incline: float, friction: float = 1.0, drag: float = 0.0
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the mean accelerations over the first metre of all volumes, by MuJoCo, and whether each can stays slow
-    enough for its liquid to be one lump."""
+    """Return the mean accelerations over the first metre of all volumes, by MuJoCo.
+
+    Then whether each can stays slow enough for its liquid to be one lump.
+    """
     scenes = [water_in(float(volume), incline, friction, drag) for volume in _VOLUMES]
     runs = [let_go(scene, times_of(scene)) for scene in scenes]
-    return np.array([over_first_metre(run) for run in runs]), np.array(
-        [lump_until(run) > _WAY for run in runs]
-    )
+    mean = np.array([over_first_metre(run) for run in runs])
+    lump = np.array([lump_until(run) > _WAY for run in runs])
+    return mean, lump
 
 
 def draw_first_metre(path: pathlib.Path) -> None:
-    """Draw the mean acceleration over the first metre over the water in the can, on three inclines, and its spread."""
+    """Draw the mean acceleration over the first metre against the water in the can.
+
+    The left panel has three inclines, the right one the spread on the gentlest.
+    """
     title = "An estimate: the friction of a little water makes a can slower than an empty one"
-    subtitle = f"12-oz can of {1e3 * CAN.mass:.3g} g with water, let go with a level surface; no measurement is fitted"
-    with chart(path, 1, 2, width=10, height=6.6, title=title, subtitle=subtitle) as (
-        inclines,
-        spread,
-    ):
-        gentle = math.radians(_INCLINES[0])
-        free = [water_in(float(volume), gentle, friction=0.0) for volume in _VOLUMES]
-        footnote = [scene.acceleration() / (scene.gravity * math.sin(gentle)) for scene in free]
-        for axes in (inclines, spread):
-            axes.axvspan(_VOLUMES[0], puddle(capillary_length()), color="#EFEFEF", zorder=0)
-            axes.axhline(0.5, **REFERENCE)
-            axes.axhline(1.0, **REFERENCE)
-            axes.plot(
-                _VOLUMES,
-                footnote,
-                label="without friction, beer that does not swing: footnote 4",
-                **THEORY,
-            )
-            axes.set(xscale="log", xlim=(_VOLUMES[0], 400), ylim=(0.27, 1.08))
-            marks = (1, 3, 10, 30, 100, 350)
-            axes.set_xticks(marks, map(str, marks))
-            axes.tick_params(which="minor", labelbottom=False)
-        for degrees in _INCLINES:
-            incline = math.radians(degrees)
-            mean, lump = _simulated(incline)
-            inclines.plot(_VOLUMES, mean, **_BEYOND)
-            if lump.any():
-                named = f"MuJoCo: friction of water, {degrees:g}°"
-                inclines.plot(_VOLUMES, np.where(lump, mean, np.nan), color=COLOURS[0], label=named)
-            theory = [water_in(volume, incline) for volume in _FEW]
-            exactly = [
-                over_first_metre(exact(scene, times_of(scene), -incline)) for scene in theory
-            ]
-            inclines.plot(
-                _FEW, exactly, ".", color="black", markersize=4, label="exact theory of the same"
-            )
-        mean, lump = _simulated(gentle)
-        most, least = _simulated(gentle, 1 / SPREAD)[0], _simulated(gentle, SPREAD)[0]
-        band = f"the friction divided or multiplied by {SPREAD:g}"
-        spread.fill_between(
-            _VOLUMES, least, most, color=COLOURS[5], alpha=0.3, linewidth=0, label=band
-        )
-        spread.plot(_VOLUMES, mean, **_BEYOND)
-        spread.plot(_VOLUMES, np.where(lump, mean, np.nan), color=COLOURS[0])
-        with_air = _simulated(gentle, 1.0, DRAG)[0]
-        spread.plot(
-            _VOLUMES,
-            with_air,
-            "--",
-            color=COLOURS[1],
-            linewidth=1.2,
-            label="MuJoCo: with the air as well, 2°",
-        )
-        ylabel = "mean acceleration over the first metre / g sin α"
-        inclines.set(
-            xlabel="water in the can [mL]", ylabel=ylabel, title="On three inclines, without air"
-        )
-        spread.set(
-            xlabel="water in the can [mL]",
-            ylabel=ylabel,
-            title=f"How sure it is, at {in_degrees(gentle)}",
-        )
-        for axes in (inclines, spread):
+    subtitle = (
+        f"12-oz can of {1e3 * CAN.mass:.3g} g with water, let go with a level surface; "
+        "no measurement is fitted"
+    )
+    with chart(path, 1, 2, width=10, height=6.6, title=title, subtitle=subtitle) as panels:
+        inclines, spread = panels
+        for axes in panels:
+            _prepare_first_metre(axes)
+        _draw_inclines(inclines)
+        _draw_spread(spread)
+        for axes in panels:
             axes.plot([], [], label=_TOO_FAST, **_BEYOND)
-        inclines.axvline(_ROSCH, ymax=0.6, linestyle="--", **REFERENCE)
-        note(inclines, "Rosch: slower near 10 mL", (_ROSCH, 0.38), (6, 0))
-        note(
-            inclines,
-            "Jackson et al.: a nearly full can comes near g sin α",
-            (400, 1.035),
-            (0, 0),
-            ha="right",
-        )
-        note(
-            inclines,
-            "Jackson et al.: a nearly empty can\nis slower than ½ g sin α",
-            (0.33, 0.33),
-            (0, 0),
-        )
-        steepest_first = ", ".join(f"{each:g}°" for each in _INCLINES[::-1])
-        note(inclines, f"from above: {steepest_first}", (400, 0.57), (0, 0), ha="right")
-        note(inclines, "hoop: ½", (400, 0.5), (0, 7), ha="right")
-        depth = f"a puddle less than {1e3 * capillary_length():.1f} mm deep,\nwhich surface tension shapes"
-        note(inclines, depth, (0.33, 0.74), (0, 0))
+        _note_facts(inclines)
         name_below([inclines, spread], 2)
 
 
+def _prepare_first_metre(axes: Axes) -> None:
+    """Set the axes of a panel of the first metre, and draw what footnote 4 of the paper says."""
+    gentle = math.radians(_INCLINES[0])
+    free = [water_in(float(volume), gentle, friction=0.0) for volume in _VOLUMES]
+    footnote = [scene.acceleration() / (scene.gravity * math.sin(gentle)) for scene in free]
+    label = "without friction, beer that does not swing: footnote 4"
+    axes.axvspan(_VOLUMES[0], puddle(capillary_length()), color="#EFEFEF", zorder=0)
+    axes.axhline(0.5, **REFERENCE)
+    axes.axhline(1.0, **REFERENCE)
+    axes.plot(_VOLUMES, footnote, label=label, **THEORY)
+    axes.set(xscale="log", xlim=(_VOLUMES[0], 400), ylim=(0.27, 1.08))
+    marks = (1, 3, 10, 30, 100, 350)
+    axes.set_xticks(marks, map(str, marks))
+    axes.tick_params(which="minor", labelbottom=False)
+    axes.set_xlabel("water in the can [mL]")
+    axes.set_ylabel("mean acceleration over the first metre / g sin α")
+
+
+def _draw_inclines(axes: Axes) -> None:
+    """Draw the mean accelerations on three inclines, by MuJoCo and by exact theory."""
+    for degrees in _INCLINES:
+        incline = math.radians(degrees)
+        mean, lump = _simulated(incline)
+        axes.plot(_VOLUMES, mean, **_BEYOND)
+        if lump.any():
+            named = f"MuJoCo: friction of water, {degrees:g}°"
+            axes.plot(_VOLUMES, np.where(lump, mean, np.nan), color=COLOURS[0], label=named)
+        theory = [water_in(volume, incline) for volume in _FEW]
+        motions = [exact(scene, times_of(scene), -incline) for scene in theory]
+        exactly = [over_first_metre(motion) for motion in motions]
+        axes.plot(_FEW, exactly, label="exact theory of the same", **_POINTS)
+    axes.set_title("On three inclines, without air")
+
+
+def _draw_spread(axes: Axes) -> None:
+    """Draw the mean acceleration on the gentle incline with other friction, and with air."""
+    gentle = math.radians(_INCLINES[0])
+    mean, lump = _simulated(gentle)
+    most, _ = _simulated(gentle, 1 / SPREAD)
+    least, _ = _simulated(gentle, SPREAD)
+    with_air, _ = _simulated(gentle, 1.0, DRAG)
+    band = f"the friction divided or multiplied by {SPREAD:g}"
+    axes.fill_between(_VOLUMES, least, most, color=COLOURS[5], alpha=0.3, linewidth=0, label=band)
+    axes.plot(_VOLUMES, mean, **_BEYOND)
+    axes.plot(_VOLUMES, np.where(lump, mean, np.nan), color=COLOURS[0])
+    label = "MuJoCo: with the air as well, 2°"
+    axes.plot(_VOLUMES, with_air, "--", color=COLOURS[1], linewidth=1.2, label=label)
+    axes.set_title(f"How sure it is, at {in_degrees(gentle)}")
+
+
+def _note_facts(axes: Axes) -> None:
+    """Write what others measured into a panel, and what its lines are."""
+    full = "Jackson et al.: a nearly full can comes near g sin α"
+    empty = "Jackson et al.: a nearly empty can\nis slower than ½ g sin α"
+    steepest_first = ", ".join(f"{degrees:g}°" for degrees in _INCLINES[::-1])
+    thin = f"a puddle less than {1e3 * capillary_length():.1f} mm deep"
+    axes.axvline(_ROSCH, ymax=0.6, linestyle="--", **REFERENCE)
+    note(axes, "Rosch: slower near 10 mL", (_ROSCH, 0.38), (6, 0))
+    note(axes, full, (400, 1.035), (0, 0), ha="right")
+    note(axes, empty, (0.33, 0.33), (0, 0))
+    note(axes, f"from above: {steepest_first}", (400, 0.57), (0, 0), ha="right")
+    note(axes, "hoop: ½", (400, 0.5), (0, 7), ha="right")
+    note(axes, f"{thin},\nwhich surface tension shapes", (0.33, 0.74), (0, 0))
+
+
 def draw_liquids(path: pathlib.Path) -> None:
-    """Draw the speed of half-full cans with real liquids over time, with their terminal speeds in this model."""
+    """Draw the speed of half-full cans with real liquids against time.
+
+    Their terminal speeds in this model are drawn as well.
+    """
     times = np.linspace(0, 6, 601)
-    scenes = {"no friction": sliding()} | {
-        name: sliding(density=LIQUIDS[name].density, damping=liquid_in(name).damping)
-        for name in NAMES
-    }
+    scenes = {"no friction": sliding()}
+    for name in NAMES:
+        damping = liquid_in(name).damping
+        scenes[name] = sliding(density=LIQUIDS[name].density, damping=damping)
+    scenes["ice"] = frozen()
     title = "From frictionless to frozen: a lump of liquid comes to a terminal speed"
-    subtitle = f"half-full massless can, incline {in_degrees(INCLINE)}; let go with a level surface; lines by MuJoCo"
+    subtitle = (
+        f"half-full massless can, incline {in_degrees(INCLINE)}; let go with a level surface; "
+        "lines by MuJoCo"
+    )
     with chart(path, 1, 2, width=10, height=5.6, title=title, subtitle=subtitle) as (fast, slow):
-        for (name, scene), colour in zip(
-            (scenes | {"ice": frozen()}).items(), _PAINTS, strict=True
-        ):
+        for (name, scene), colour in zip(scenes.items(), _PAINTS, strict=True):
             run = let_go(scene, times)
             truth = exact(scene, times[::50], -INCLINE)
-            real = name in NAMES
-            whole = math.inf if not real else lump_until(run)
+            is_real = name in NAMES
+            whole = lump_until(run) if is_real else math.inf
             lump = run.u - run.u[0] < whole
             for axes in (fast, slow):
                 if not lump.all():
                     axes.plot(times, run.u_dot, **(_BEYOND | {"color": colour}))
                 axes.plot(times, np.where(lump, run.u_dot, np.nan), color=colour, label=name)
-                axes.plot(
-                    truth.time, truth.u_dot, ".", color="black", markersize=4, label="exact theory"
-                )
-                if real and lump.all():
+                axes.plot(truth.time, truth.u_dot, label="exact theory", **_POINTS)
+                if is_real and lump.all():
                     axes.axhline(scene.terminal_speed(), color=colour, linestyle="--", linewidth=1)
             if not lump.all():
                 note(fast, name, (times[-1], run.u_dot[-1]), (-4, 8), ha="right")
         fast.plot([], [], "--", color=GREY, linewidth=1, label="terminal speed")
         fast.plot([], [], label=_TOO_FAST, **(_BEYOND | {"color": GREY}))
-        ylabel, closer = "speed of the can down the incline [m/s]", "The slow ones, seen closer"
-        fast.set(
-            xlabel="time t [s]", ylabel=ylabel, title="All of them", xlim=(0, 6), ylim=(-0.3, 5)
-        )
-        slow.set(xlabel="time t [s]", ylabel=ylabel, title=closer, xlim=(0, 2), ylim=(-0.2, 0.6))
+        for axes in (fast, slow):
+            axes.set(xlabel="time t [s]", ylabel="speed of the can down the incline [m/s]")
+        fast.set(title="All of them", xlim=(0, 6), ylim=(-0.3, 5))
+        slow.set(title="The slow ones, seen closer", xlim=(0, 2), ylim=(-0.2, 0.6))
         name_below([fast, slow], 5)
 
-
-_BEYOND = {"color": COLOURS[0], "linestyle": ":", "linewidth": 1.3}
-_TOO_FAST = "beyond the model: too fast for the liquid to stay below"
-"""Look and name of motions in which the wall's centrifugal acceleration exceeds gravity's part across the incline."""
-_PAINTS = (GREY, COLOURS[0], COLOURS[4], COLOURS[2], COLOURS[1], COLOURS[3], COLOURS[5])
-"""Colours of no friction, of the liquids from thin to thick, and of ice."""
 
 if __name__ == "__main__":
     draw_first_metre(pathlib.Path(__file__).with_name("real-beer"))

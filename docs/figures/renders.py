@@ -1,4 +1,7 @@
-"""Writes each film as an animated WebP, less than 1.5 MB each: `python docs/figures/renders.py renders`."""
+"""Writes every film as an animated WebP of less than 1.5 MB.
+
+`python docs/figures/renders.py renders` writes them into renders.
+"""
 
 import pathlib
 import sys
@@ -8,12 +11,17 @@ from PIL import Image
 from mjbeer.output import files
 from mjbeer.report.films import FILMS
 
-WIDTH, HEIGHT, FPS = 720, 450, 18
-"""Width and height [pixels] and pictures per second."""
+WIDTH = 720
+"""[pixels]"""
+HEIGHT = 450
+"""[pixels]"""
+FPS = 18
+"""Pictures per second."""
 
 for name, film in FILMS.items():
     plan = film.plan()
-    first, *others = (Image.fromarray(each) for each in plan.draw(plan.times(FPS), WIDTH, HEIGHT))
+    pictures = plan.draw(plan.times(FPS), WIDTH, HEIGHT)
+    first, *others = (Image.fromarray(picture) for picture in pictures)
     target = pathlib.Path(sys.argv[1]) / f"{name}.webp"
     with files.atomic_write(target) as temporary:  # at 55, letters are sharp
         first.save(

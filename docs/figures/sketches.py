@@ -14,8 +14,13 @@ from mjbeer import Scene, frozen
 from mjbeer.output.plots import COLOURS, GREY, chart
 
 HERE = pathlib.Path(__file__).parent
-BEER, SURFACE = "#E8A33D", "#A05A00"
-LETTER, FORCE = COLOURS[0], COLOURS[1]
+BEER = "#E8A33D"
+SURFACE = "#A05A00"
+LETTER = COLOURS[0]
+FORCE = COLOURS[1]
+ARC = COLOURS[0]
+OTHER_ARC = COLOURS[2]
+TURNS = COLOURS[1]
 
 
 def on_circle(angle: float | np.ndarray, radius: float = 1.0) -> np.ndarray:
@@ -43,7 +48,10 @@ def arrow(
 
 
 def can(axes: Axes, half_angle: float, turned: float) -> None:
-    """Draw a can of radius 1 and its load, a segment whose middle is turned from the bottom by an angle [rad]."""
+    """Draw a can of radius 1 and its load, a segment.
+
+    The middle of the segment is `turned` from the bottom by an angle [rad].
+    """
     axes.set_axis_off()
     axes.set_aspect("equal")
     axes.plot(*on_circle(np.linspace(0, 2 * math.pi, 361)).T, color="black", linewidth=1.5)
@@ -60,6 +68,12 @@ def write(
     axes.text(*place, text, color=colour, **({"ha": "center", "va": "center"} | style))
 
 
+def point_at(axes: Axes, target: np.ndarray, place: tuple[float, float], text: str) -> None:
+    """Write a text at a place, with a line to what it speaks of."""
+    line = {"arrowstyle": "-", "color": GREY}
+    axes.annotate(text, tuple(target), place, ha="center", va="center", arrowprops=line)
+
+
 def draw_rolling() -> None:
     """Draw the three ways in which a model can be made to roll."""
     with chart(HERE / "rolling", 1, 3, 11, 4.2) as (reduced, equality, contact):
@@ -70,7 +84,8 @@ def draw_rolling() -> None:
             )
             axes.set(xlim=(-1.65, 1.65), ylim=(-2.05, 1.5))
             axes.set_title(name, loc="center", fontweight="bold")
-        fixed, site = np.array([0, 0.75]), on_circle(math.radians(-50), 0.75)
+        fixed = np.array([0, 0.75])
+        site = on_circle(math.radians(-50), 0.75)
         reduced.plot(*np.transpose([fixed, site]), color=FORCE, linewidth=2.5)
         reduced.plot(*np.transpose([fixed, [0, 0], site]), "--", color=LETTER, linewidth=1)
         reduced.plot(*np.transpose([fixed, site]), "o", color=FORCE, markersize=6)
@@ -108,12 +123,9 @@ def draw_layer() -> None:
         half = math.radians(62)
         can(axes, half, math.radians(-14))
         angles = math.radians(-14) + np.linspace(half, -half, 181)
-        thick = 0.035 + 0.22 * np.sqrt(
-            np.linspace(0, 1, 181)
-        )  # grows with the root of the distance
-        inner = np.array(
-            [on_circle(angle, 1 - depth) for angle, depth in zip(angles, thick, strict=True)]
-        )
+        # It grows with the root of the distance.
+        thick = 0.035 + 0.22 * np.sqrt(np.linspace(0, 1, 181))
+        inner = (1 - thick[:, np.newaxis]) * on_circle(angles)
         layer = np.concatenate([on_circle(angles), inner[::-1]])
         (shown,) = axes.fill(*layer.T, color=COLOURS[5], alpha=0.6, linewidth=0)
         shown.set_clip_path(Polygon(on_circle(angles), transform=axes.transData))
@@ -129,31 +141,13 @@ def draw_layer() -> None:
             connectionstyle="arc3,rad=-0.2",
         )
         write(axes, "w", (0.62, 0.12), FORCE)
-        for place, target, text in (
-            (
-                (1.5, -0.95),
-                on_circle(math.radians(30), 0.97),
-                "the layer begins here,\nwhere the wall dips in",
-            ),
-            (
-                (-1.55, -0.95),
-                on_circle(math.radians(-60), 0.86),
-                "and is thickest here:\n√(νX/U) with U = aw",
-            ),
-            ((1.55, 0.45), on_circle(math.radians(-5), 0.5), "the liquid above it\nlies still"),
-        ):
-            axes.annotate(
-                text,
-                target,
-                place,
-                ha="center",
-                va="center",
-                arrowprops={"arrowstyle": "-", "color": GREY},
-            )
+        begins = on_circle(math.radians(30), 0.97)
+        thickest = on_circle(math.radians(-60), 0.86)
+        still = on_circle(math.radians(-5), 0.5)
+        point_at(axes, begins, (1.5, -0.95), "the layer begins here,\nwhere the wall dips in")
+        point_at(axes, thickest, (-1.55, -0.95), "and is thickest here:\n√(νX/U) with U = aw")
+        point_at(axes, still, (1.55, 0.45), "the liquid above it\nlies still")
         axes.set(xlim=(-2.2, 2.2), ylim=(-1.35, 1.1))
-
-
-ARC, OTHER_ARC, TURNS = COLOURS[0], COLOURS[2], COLOURS[1]
 
 
 def height(scene: Scene, phi: float | np.ndarray) -> np.ndarray:

@@ -1,4 +1,7 @@
-"""Draws the maps in docs/stability.md anew, which come with mjbeer: `python docs/figures/stability.py`."""
+"""Draws the maps in docs/stability.md anew, which come with mjbeer.
+
+Run it as `python docs/figures/stability.py`.
+"""
 
 import pathlib
 

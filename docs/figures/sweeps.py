@@ -1,5 +1,6 @@
-"""Draws the three maps of `docs/sweeps.md`, by MuJoCo, with the borders that theory gives, beside this file.
+"""Draws the three maps of `docs/sweeps.md`, by MuJoCo, with the borders that theory gives.
 
+They are written beside this file.
 `python docs/figures/sweeps.py` takes some minutes.
 """
 
@@ -23,12 +24,16 @@ from mjbeer.output.plots import COLOURS, chart, name_below
 HERE = pathlib.Path(__file__).parent
 SHADES = ["#D6E6F2", "#7FB3D9", "#F3D9A4", "#E8A583"]
 LINE: dict[str, Any] = {"color": COLOURS[-1], "linewidth": 1.2}
-STEEPEST, SAMPLES = math.radians(45), 1001
+STEEPEST = math.radians(45)
+"""The steepest incline [rad] of the map of outcomes."""
+SAMPLES = 1001
+"""Samples of a motion in which theory looks for slip and parting."""
 
 
 def draw_outcomes(friction: float = 0.5, duration: float = 2.0) -> None:
     """Draw what a frozen can does that is released with its surface along the incline."""
-    inclines, fills = np.radians(np.linspace(0.5, 45, 90)), np.linspace(0.05, 0.95, 61)
+    inclines = np.radians(np.linspace(0.5, 45, 90))
+    fills = np.linspace(0.05, 0.95, 61)
     swept = mjbeer.sweep(frozen, duration, 0.0, tolerance=1e-6, incline=inclines, fill=fills)
     found = np.where(np.abs(swept["phi"].values) > math.pi, 1, 0)
     found[swept["friction_needed"].values > friction] = 2
@@ -47,15 +52,12 @@ def draw_outcomes(friction: float = 0.5, duration: float = 2.0) -> None:
     def parts(scene: Scene) -> float:
         return float(-exact(scene, np.linspace(0, duration, SAMPLES), 0.0).forces.normal.min())
 
-    part, slip, down = (
-        np.array([border(each, fill) for fill in fills]) for each in (parts, slips, rolls_down)
-    )
+    part = np.array([border(parts, fill) for fill in fills])
+    slip = np.array([border(slips, fill) for fill in fills])
+    down = np.array([border(rolls_down, fill) for fill in fills])
     near = math.radians(0.01)
-    seen = (
-        part < STEEPEST,
-        slip < part - near,
-        down <= part + near,
-    )  # beyond parting, there is nothing to see
+    # Beyond parting, there is nothing to see.
+    seen = (part < STEEPEST, slip < part - near, down <= part + near)
     names = [
         "rocks",
         "rolls down",
@@ -67,13 +69,15 @@ def draw_outcomes(friction: float = 0.5, duration: float = 2.0) -> None:
         colour(axes, np.degrees(inclines), fills, found, "incline [°]", "fill")
         for line, shown in zip((part, slip, down), seen, strict=True):
             axes.plot(np.degrees(np.where(shown, line, np.nan)), fills, **LINE)
-        name_below(
-            [axes], 3, [*patches(names), Line2D([], [], label="borders by exact theory", **LINE)]
-        )
+        borders = Line2D([], [], label="borders by exact theory", **LINE)
+        name_below([axes], 3, [*patches(names), borders])
 
 
 def border(excess: Callable[[Scene], float], fill: float) -> float:
-    """Return the incline [rad] at which an excess of theory's becomes positive, to a tenth of the width of its line."""
+    """Return the incline [rad] at which an excess of theory's becomes positive.
+
+    It is found to a tenth of the width of its line.
+    """
 
     def of_incline(incline: float) -> float:
         try:
@@ -87,7 +91,8 @@ def border(excess: Callable[[Scene], float], fill: float) -> float:
 
 def draw_periods() -> None:
     """Draw the period of a frozen can that is released at rest below its equilibrium."""
-    inclines, amplitudes = np.radians(np.linspace(0, 24, 49)), np.radians(np.linspace(2, 178, 59))
+    inclines = np.radians(np.linspace(0, 24, 49))
+    amplitudes = np.radians(np.linspace(2, 178, 59))
     scenes = [frozen(float(incline)) for incline in inclines]
     largest = np.array([scene.separatrix()[1] - scene.equilibrium() for scene in scenes])
     swings = amplitudes < largest[:, np.newaxis]
@@ -109,28 +114,28 @@ def draw_periods() -> None:
     with chart(HERE / "sweep-periods", 1, 1, 8, 5.5, "The period of a frozen can", subtitle) as (
         axes,
     ):
-        tilts, swing = np.degrees(inclines), np.degrees(amplitudes)
+        tilts = np.degrees(inclines)
+        swing = np.degrees(amplitudes)
         mesh = axes.pcolormesh(
             tilts, swing, measured.T, cmap="cividis", shading="nearest", rasterized=True
         )
-        lines = axes.contour(
-            tilts, swing, theory.T, (0.5, 0.55, 0.6, 0.7, 0.8, 1.0), colors="white", linewidths=1
-        )
+        periods = (0.5, 0.55, 0.6, 0.7, 0.8, 1.0)
+        lines = axes.contour(tilts, swing, theory.T, periods, colors="white", linewidths=1)
         axes.clabel(lines, fmt=lambda period: f"{period:g} s")
         axes.plot(tilts, np.degrees(largest), **LINE)
         axes.set(xlabel="incline [°]", ylabel="amplitude [°]", xlim=(0, tilts[-1]), ylim=(0, 180))
         axes.grid(visible=False)
-        axes.figure.colorbar(mesh, ax=axes, label="period by MuJoCo [s]")
-        theory_line = Line2D(
-            [], [], label="by exact theory: the largest swing, and periods in white", **LINE
-        )
-        name_below([axes], 1, [theory_line])
+        # The layout of `chart` fails on a gridspec for the bar, which has rows without height.
+        axes.figure.colorbar(mesh, ax=axes, label="period by MuJoCo [s]", use_gridspec=False)
+        label = "by exact theory: the largest swing, and periods in white"
+        name_below([axes], 1, [Line2D([], [], label=label, **LINE)])
 
 
 def draw_damping(duration: float = 4.0) -> None:
-    """Draw whose load is carried over the top that is let go with its surface level."""
+    """Draw which cans, let go with their surface level, carry their load over the top."""
     metal = Can.sheet_metal()
-    dampings, inclines = np.geomspace(1e-4, 0.1, 37), np.radians(np.linspace(12, 32, 41))
+    dampings = np.geomspace(1e-4, 0.1, 37)
+    inclines = np.radians(np.linspace(12, 32, 41))
 
     def can(incline: float, damping: float) -> Scene:
         return sliding(incline, can=metal, damping=damping)
@@ -143,29 +148,24 @@ def draw_damping(duration: float = 4.0) -> None:
         mjbeer.sweep(can, duration, -tilt, tolerance=1e-6, damping=dampings, incline=tilt)
         for tilt in inclines
     ]
-    found = np.array(
-        [np.abs(each["phi"].values) > math.pi for each in swept]
-    ).T  # once over the top, for good
+    # A load that has once been over the top stays beyond it.
+    found = np.array([np.abs(runs["phi"].values) > math.pi for runs in swept]).T
     shown = dampings[::2]  # exact motions of a stiff can take a second
-    borders = [
-        bisect(beyond, inclines[0], inclines[-1], (each,), xtol=math.radians(0.025))
-        for each in shown
-    ]
+    ends = (inclines[0], inclines[-1])
+    near = math.radians(0.025)
+    borders = [bisect(beyond, *ends, (damping,), xtol=near) for damping in shown]
     subtitle = f"half-full can of sheet metal, let go with its surface level, {duration:g} s"
     with chart(HERE / "sweep-damping", 1, 1, 8, 5.5, "What a damped can does", subtitle) as (axes,):
         axes.set_xscale("log")
         colour(axes, dampings, np.degrees(inclines), found, "damping [N m s]", "incline [°]")
         axes.plot(shown, np.degrees(borders), **LINE)
         axes.axhline(math.degrees(frozen(can=metal).largest_incline()), linestyle="--", **LINE)
+        outcomes = patches(["the load stays below", "the load is carried over the top"])
         lines = [
             Line2D([], [], label="border by exact theory", **LINE),
             Line2D([], [], label="steepest with steady rolling", linestyle="--", **LINE),
         ]
-        name_below(
-            [axes],
-            2,
-            [*patches(["the load stays below", "the load is carried over the top"]), *lines],
-        )
+        name_below([axes], 2, [*outcomes, *lines])
 
 
 def colour(

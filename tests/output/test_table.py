@@ -58,10 +58,8 @@ def test_csv_gives_every_number_back_to_the_last_bit(scene: Scene) -> None:
 def test_a_program_reads_tabs_and_an_eye_lines(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    one, other = (
-        Table("One", ("name", "value [rad]"), [("phi", "1.5")]),
-        Table("Other", ("name",), [("F",)]),
-    )
+    one = Table("One", ("name", "value [rad]"), [("phi", "1.5")])
+    other = Table("Other", ("name",), [("F",)])
     terminal.show(one, other)
     assert capsys.readouterr().out == "# One\nname\tvalue [rad]\nphi\t1.5\n\n# Other\nname\nF\n"
     monkeypatch.setattr(sys.stdout, "isatty", lambda: True)

@@ -40,7 +40,8 @@ from mjbeer.studies.sweep_runs import (
 )
 from tests.support.processes import hear, interrupt, start
 
-INCLINES, FILLS = np.radians([3.0, 11.0, 20.0]), np.array([0.2, 0.5, 0.7, 0.95])
+INCLINES = np.radians([3.0, 11.0, 20.0])
+FILLS = np.array([0.2, 0.5, 0.7, 0.95])
 
 
 def sweep_of_sliding(
@@ -159,10 +160,10 @@ def test_a_period_is_that_of_exact_theory() -> None:
     starts = [-2.0, -0.3, 0.8]
     swept = mjbeer.sweep(sliding, 2.0, starts, tolerance=1e-6, quantity="period", fill=[0.1, 0.75])
     for (row, column), period in np.ndenumerate(swept["period"].values):
-        scene, phi0 = sliding(fill=float(swept["fill"][row])), starts[column]
-        assert period == pytest.approx(
-            scene.period(phi0 - scene.equilibrium()), rel=1e-5 / min(1, abs(phi0))
-        )
+        scene = sliding(fill=float(swept["fill"][row]))
+        phi0 = starts[column]
+        truth = scene.period(phi0 - scene.equilibrium())
+        assert period == pytest.approx(truth, rel=1e-5 / min(1, abs(phi0)))
 
 
 @pytest.mark.parametrize(

@@ -104,7 +104,10 @@ def work_and_sleep() -> dict[str, Any]:
 
 
 def hang_in_a_program() -> None:
-    """Start a program that hangs and ignores signals, and wait for it; the program says when it is there."""
+    """Start a program that hangs and ignores signals, and wait for it.
+
+    The program says when it is there.
+    """
     subprocess.run(["sh", "-c", "trap '' INT TERM; echo at work; exec sleep 3600"], check=True)
 
 

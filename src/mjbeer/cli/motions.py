@@ -282,20 +282,19 @@ def fit(given: Namespace) -> None:
     from mjbeer.tracks.fit import fit
     from mjbeer.tracks.track import read_track
 
-    output, phi0 = given.output, given.phi0
+    output = given.output
     if output and output.suffix not in (".svg", ".png", ".mp4"):
         raise ParameterError(
             f"the file's name must end in .svg or .png or .mp4, got {str(output)!r}"
         )
     try:
-        phi0 = phi0 if phi0 in ("level", "free") else angle(phi0)
+        phi0 = given.phi0 if given.phi0 in ("level", "free") else angle(given.phi0)
     except ValueError:
         raise ParameterError(
-            f"phi0 must be level, free, or a number [degrees], got {phi0!r}"
+            f"phi0 must be level, free, or a number [degrees], got {given.phi0!r}"
         ) from None
-    track = read_track(
-        given.file, dict(each.partition("=")[::2] for each in given.columns), given.rate
-    )
+    columns = dict(column.partition("=")[::2] for column in given.columns)
+    track = read_track(given.file, columns, given.rate)
     with warnings.catch_warnings(action="ignore", category=LiquidWarning):  # of a guess
         guess = scene(given)
     with files.atomic_write(output) if output else nullcontext() as temporary:
@@ -310,8 +309,8 @@ def fit(given: Namespace) -> None:
             terminal.write(to_json(told, indent=2))
         else:
             terminal.write("\n".join([found.title, *found.lines()]) + "\n")
-            for each in found.warnings:
-                say(f"note: {each}", "yellow")
+            for warning in found.warnings:
+                say(f"note: {warning}", "yellow")
         if temporary and temporary.suffix == ".mp4":
             found.video(temporary)
         elif temporary:

@@ -130,7 +130,10 @@ def write(
 
 
 def _kill_ffmpeg(writer: Any) -> None:
-    """End the ffmpeg of a `mediapy.VideoWriter`: to close the writer is to wait for it, and it may hang."""
+    """End the ffmpeg of a `mediapy.VideoWriter`.
+
+    To close the writer is to wait for its ffmpeg, which may hang.
+    """
     process = writer._proc
     if process is None:
         return

@@ -1,4 +1,5 @@
-"""The equations written by hand against the theory's, and every other tool that is there against exact theory."""
+"""Tests of other tools: the equations written by hand agree with the theory's, and every tool that
+is installed agrees with exact theory."""
 
 import importlib
 import math
@@ -23,10 +24,11 @@ from tests.support.scenes import METAL
 
 pytestmark = pytest.mark.slow
 
-# A tolerance holds for one step, of which there are some hundreds, and for metres, of which a radian of rolling has
-# 0.03. Measured: up to 75 times the tolerance (odeint).
+# A tolerance holds for one step, of which there are some hundreds, and for metres, of which a
+# radian of rolling has 0.03. Measured: up to 75 times the tolerance (odeint).
 GLOBAL = 300
-# The error over that tolerance is not constant: steps are few, and methods change their order. Measured: 0.90 to 1.13.
+# The error divided by that tolerance is not constant: steps are few, and methods change their
+# order. Measured: 0.90 to 1.13.
 SLOPE = 0.2
 TIMES = np.linspace(0, 1.024, 65)
 

@@ -71,7 +71,10 @@ def test_between_points_of_the_front_error_is_a_power_of_time() -> None:
 
 
 def test_a_ratio_is_that_of_the_least_times_with_its_range_over_rounds() -> None:
-    """One takes 2 and 6 s in two rounds, the other 1 and 2 s: 2 s to 1 s in the least, 2 and 3 in rounds."""
+    """One takes 2 and 6 s in two rounds, the other 1 and 2 s.
+
+    The ratio of the least times is 2 s to 1 s; those of the rounds are 2 and 3.
+    """
     slow = Point("frozen", "reduced", "RK4", TIMESTEP, 1e-3, 1e-3, 1e-3, times=[2, 6])
     fast = Point("frozen", "reduced", "DOP853", TIMESTEP, 1e-3, 1e-3, 1e-3, times=[1, 2])
     ratio = points.time_ratio([slow], [fast], 1e-3)
@@ -81,7 +84,10 @@ def test_a_ratio_is_that_of_the_least_times_with_its_range_over_rounds() -> None
 
 @pytest.fixture
 def made_up() -> Benchmark:
-    """RK4 takes twice as long as the best for 1e-3 rad; heyoka takes half as long, and 10 s to compile."""
+    """RK4 takes twice as long as the best for 1e-3 rad.
+
+    heyoka takes half as long, and 10 s to compile.
+    """
     best = point(1, 1e-3, method="DOP853")
     rk4 = point(2, 1e-3)
     rk4.evaluations = 4096
@@ -131,7 +137,10 @@ def test_the_fastest_setting_is_named(made_up: Benchmark) -> None:
 
 
 def test_a_contact_converges_with_an_order() -> None:
-    """An error that falls to a quarter in half the timestep is of order 2, and one that stays of order 0."""
+    """An error that falls to a quarter in half the timestep is of order 2.
+
+    One that stays is of order 0.
+    """
     contact = Curve("contact", "RK4")
     usual = Curve("contact, defaults", "Euler")
     rungs = [
@@ -155,7 +164,7 @@ def stored() -> Benchmark:
 
 
 def measured_again(stored: Benchmark) -> list[Point]:
-    """One quick point of every curve of a case whose error is that of the method, not of rounding."""
+    """One quick point of every curve of a case; its error is the method's own, not rounding."""
     found = {}
     for old in stored.points:
         suitable = ABOVE_ROUNDING < old.error < 1.0 and old.time < QUICK

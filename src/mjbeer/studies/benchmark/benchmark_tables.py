@@ -20,8 +20,8 @@ from mjbeer.studies.benchmark.points import Benchmark, Curve, Point, millisecond
 COMPARED = (1e-3, 1e-6)
 """The errors [rad] at which run times are compared: what a motion is usually needed to."""
 FINEST = 1e-11
-"""A third one, for what it is: near rounding the order of a method decides alone, and RK4 has 4 while
-Gauss-Jackson has 13."""
+"""A third error [rad], near rounding. There the order of a method alone decides, and RK4 has order
+4 while Gauss-Jackson has order 13."""
 RK4 = "MuJoCo RK4"
 OTHERS = (RK4, ODEINT, COMPILED_ODEINT, COMPILED_DOP853, HEYOKA)
 """Compared with mjbeer's best reduced setting."""
@@ -33,10 +33,11 @@ _CONTACT = (
 )
 """The curves whose convergence with the timestep is shown."""
 _NOTES = """
-The run time is the processor's time of one call that returns 65 samples of 2.048 s of motion, in one thread and with
-warm caches: the least of the rounds, and the largest where two times are given. What is done once, to build and
-compile a model or to compile equations, is not in it; whole calls and study.json have it. Errors are against exact
-theory. "Compiled equations" and heyoka integrate equations that were derived by hand, without MuJoCo; odeint is LSODA.
+The run time is the processor's time of one call that returns 65 samples of 2.048 s of motion, in
+one thread and with warm caches: the least of the rounds, and the largest where two times are given.
+What is done once, to build and compile a model or to compile equations, is not in it; whole calls
+and study.json have it. Errors are against exact theory. "Compiled equations" and heyoka integrate
+equations that were derived by hand, without MuJoCo; odeint is LSODA.
 
 ![Work-precision diagram](work_precision.svg)
 """
@@ -95,7 +96,10 @@ def ratios(study: Benchmark, errors: Sequence[float]) -> Table:
     def best_cell(best: Sequence[Point], error: float) -> str:
         return spread(points.times_in_rounds(best, error))
 
-    title = "Run time divided by that of mjbeer's best reduced setting, at equal error (below 1 is faster)"
+    title = (
+        "Run time divided by that of mjbeer's best reduced setting, "
+        "at equal error (below 1 is faster)"
+    )
     return _comparison(study, errors, title, best_cell, cell)
 
 

@@ -80,7 +80,7 @@ class OtherTool:
 def right_hand_side(
     scene: Scene, sin: Function = math.sin, cos: Function = math.cos
 ) -> RightHandSide:
-    """Return the function f(t, state) that gives the rates of change of a state [rad, m, and per s].
+    """Return the function f(t, state) that gives the rates of change of a state [rad, m, per s].
 
     The scene has no damping. Pass the state as plain floats: with NumPy's scalars the function
     takes four times as long. With the `sin` and `cos` of a library of symbols, it returns symbols.
@@ -186,7 +186,10 @@ def _set_up_dop853(case: Case, tolerance: float) -> Solver:
 
 
 def _set_up_heyoka(case: Case, tolerance: float) -> Solver:
-    """Set Taylor's method up, compiled for one scene and tolerance (github.com/bluescarni/heyoka.py)."""
+    """Set Taylor's method up, compiled for one scene and tolerance.
+
+    It is the one of github.com/bluescarni/heyoka.py.
+    """
     import heyoka
 
     start = np.array(initial_state(case))
@@ -229,7 +232,7 @@ OTHER_TOOLS = {
 
 
 def absent() -> dict[str, str]:
-    """Return the names of the tools that cannot be imported here, each with the reason, on one line."""
+    """Return the tools that cannot be imported here, by name, each with the reason on one line."""
     try:
         importlib.import_module("heyoka")  # optional: `pip install ".[peers]"` installs it
     except Exception as error:  # a package that lacks a library of the system may raise anything

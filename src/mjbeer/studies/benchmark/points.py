@@ -146,7 +146,10 @@ class Point:
 
 
 def milliseconds(time: float) -> str:
-    """Return a time [s] as text, in milliseconds; an infinite one is that of what no setting reached."""
+    """Return a time [s] as text, in milliseconds.
+
+    An infinite time is that of what no setting reached.
+    """
     return f"{1e3 * time:.3g} ms" if math.isfinite(time) else "not reached"
 
 
@@ -164,7 +167,7 @@ def spread(times: Sequence[float]) -> str:
 
 @dataclass
 class Benchmark:
-    """A study of error against run time; its points are in the order in which they were measured."""
+    """A study of error against run time; its points are in the order of their measurement."""
 
     settings: dict[str, Any]
     machine: dict[str, Any]
@@ -209,7 +212,7 @@ class Benchmark:
 
 
 def pareto_front(points: Iterable[Point]) -> list[Point]:
-    """Return the points than which no other has both less error and less run time, fastest first."""
+    """Return the points, fastest first, than which no other has less error and less run time."""
     best: list[Point] = []
     for point in sorted(points, key=lambda point: (point.time, point.error)):
         if not best or point.error < best[-1].error:

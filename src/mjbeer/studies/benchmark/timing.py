@@ -1,4 +1,7 @@
-"""Run the benchmark: each setting once for its error, then all settings in rounds for their times."""
+"""Run the benchmark.
+
+Each setting is run once for its error, then all settings in rounds for their times.
+"""
 
 import gc
 import math
@@ -36,8 +39,8 @@ settings alike."""
 _WARM = 0.05
 """A run shorter than this [s] is run once before, so that caches and predictors are warm."""
 _BRIEF = 0.01
-"""A run that is shorter than this [s] is repeated for so long, as one of a tenth of a millisecond is at
-the mercy of the system. Its time in a round is the median."""
+"""A run that is shorter than this [s] is repeated for so long, as one of a tenth of a millisecond
+is at the mercy of the system. Its time in a round is the median."""
 
 
 def run(names: Sequence[str], quick: bool, console: Console | None) -> Benchmark:
@@ -193,6 +196,6 @@ def _set_up_setting(case: Case, point: Point) -> Solver:
 
 
 def _evaluations_of_steps(case: Case, point: Point) -> int:
-    """Return how often one of MuJoCo's integrators evaluates the accelerations with a fixed timestep."""
+    """Return how often MuJoCo's integrator evaluates the accelerations with a fixed timestep."""
     steps = round(float(case.times[-1]) / point.value)
     return 4 * steps if point.method == "RK4" else steps

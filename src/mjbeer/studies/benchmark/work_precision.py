@@ -54,8 +54,8 @@ _CEILING = 3.0
 """Larger errors [rad] are no motion."""
 _SUBTITLE = (
     "Each point is one setting. Further left is faster, further down is more exact. Setting up and "
-    "compiling are not in the run time. Solid lines call MuJoCo; dashed lines integrate equations that "
-    "were derived by hand and compiled."
+    "compiling are not in the run time. Solid lines call MuJoCo; dashed lines integrate equations "
+    "that were derived by hand and compiled."
 )
 
 
