@@ -14,7 +14,8 @@ from mjbeer.drawing.film import Film, MotionFilm, Race, Runner
 from mjbeer.drawing.overlay import HEADER, Look
 from mjbeer.drawing.scene import Display, Painter, coordinates
 from mjbeer.drawing.sheet import Sheet
-from mjbeer.theory.can import RADIUS, segment
+from mjbeer.theory.can import RADIUS
+from mjbeer.theory.segment import segment
 
 pytestmark = pytest.mark.slow
 

@@ -13,7 +13,7 @@ from mpmath import MPContext
 import mjbeer
 from mjbeer import Can, Damping, Load, Scene, exact, liquid, sliding
 from mjbeer.exceptions import ParameterError
-from mjbeer.theory.can import segment
+from mjbeer.theory.segment import segment
 
 BEER = Load(0.2, 0.01, 1e-5)
 

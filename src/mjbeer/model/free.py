@@ -17,8 +17,9 @@ from mjbeer.exceptions import TemplateError, UnsupportedError
 from mjbeer.model import looks, mjcf_file
 from mjbeer.model.mjcf_file import Parameters
 from mjbeer.model.setting import MUJOCO_INTEGRATORS, Setting
-from mjbeer.theory.can import Can, segment
+from mjbeer.theory.can import Can
 from mjbeer.theory.scene import Scene, sliding
+from mjbeer.theory.segment import segment
 from mjbeer.theory.standing import Standing, standing
 
 BREAKING = 0.02
