@@ -86,7 +86,7 @@ def test_at_every_fill(fill: float) -> None:
 
 
 def test_a_shallow_liquid_swings_as_waves_in_a_parabolic_canal() -> None:
-    """They have omega^2 a/g = n (n + 1)/2 for odd n (Chrystal, Trans. R. Soc. Edinb. 41, 599, 1905).
+    """They have omega^2 a/g = n (n + 1)/2 for odd n (Chrystal, Trans. R. S. Edinb. 41, 599, 1905).
 
     In the first the whole liquid is one pendulum. If the can has no mass, it moves instead.
     """

@@ -92,12 +92,12 @@ STEP = 1 / 12
 """Distance of the kappa at which the integrand is taken.
 
 It is even and smooth, and its nearest singularity is at least 1/2 off the real axis. So the sum
-errs by exp(-2 pi/(2 STEP)), which is 4e-17, if kappa is not limited."""
+errs by exp(-pi/STEP), which is 4e-17, if kappa is not limited."""
 HIGHEST = 70.0
 """Largest kappa: beyond it the integrand of so many polynomials is below 1e-22."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Modes:
     """The antisymmetric modes of a liquid, the slowest first; each array has a number per mode."""
 
@@ -113,8 +113,8 @@ class Modes:
     def frequencies(self, radius: float, gravity: float) -> np.ndarray:
         """Return the natural frequencies [rad/s], shape (POLYNOMIALS,).
 
-        The can has the `radius` [m]; `gravity` [m/s^2] is the part of it that is normal to the
-        surface at rest.
+        The can has the `radius` [m]; `gravity` [m/s^2] is that in the frame of the can, to which
+        the surface at rest is normal.
 
         Raises:
           ParameterError: if one of them is outside the domain. Without gravity nothing sloshes.
@@ -126,7 +126,7 @@ class Modes:
         return np.sqrt(gravity / (radius * self.lengths))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class HeldModes(Modes):
     """The modes in a can that is held."""
 
@@ -136,7 +136,7 @@ class HeldModes(Modes):
         return self.offset * self.energy_shares / self.lengths
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class RollingModes(Modes):
     """The modes in a can that rolls on level ground."""
 
@@ -215,8 +215,8 @@ def _held(fill: float) -> HeldModes:
 def _transforms() -> tuple[np.ndarray, np.ndarray]:
     """Return the kappa, shape (kappas,), and the D_j there, shape (POLYNOMIALS, kappas).
 
-    They are those of a half chord of 1, where e_j = sqrt((4j + 3)/2) P_(2j+1)(x) with Legendre's
-    polynomials P. With s = tanh(tau/2) and
+    They are those of a half chord of 1. With Legendre's polynomials P, e_j is then
+    (-1)^j sqrt((4 j + 3)/2) P_(2j+1)(x), where the signs are free. With s = tanh(tau/2) and
 
         F_l(kappa) = integral of exp(i kappa tau) dP_l(s)/d tau d tau
 
@@ -225,7 +225,7 @@ def _transforms() -> tuple[np.ndarray, np.ndarray]:
 
         F_(l+1) = F_(l-1) + 2 i kappa (2 l + 1)/(l (l + 1)) F_l.
 
-    F_l = i^(l-1) H_l has real H_l, and D_j is that of F_(2j+1) = (-1)^j H_(2j+1).
+    F_l is i^(l-1) H_l with a real H_l, and so D_j is sqrt((4 j + 3)/2) H_(2j+1).
     """
     # In the middle between multiples of the step: kappa = 0 needs no limit.
     kappa = (np.arange(round(HIGHEST / STEP)) + 0.5) * STEP
@@ -234,8 +234,7 @@ def _transforms() -> tuple[np.ndarray, np.ndarray]:
     transforms = []
     for degree in range(1, 2 * POLYNOMIALS):
         if degree % 2:
-            index = degree // 2
-            transforms.append((-1) ** index * math.sqrt(degree + 0.5) * now)
+            transforms.append(math.sqrt(degree + 0.5) * now)
         factor = 2 * kappa * (2 * degree + 1) / (degree * (degree + 1))
         following = factor * now - before
         before = now
