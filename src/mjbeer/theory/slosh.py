@@ -63,7 +63,7 @@ References:
   P. McIver, "Sloshing frequencies for cylindrical and spherical containers filled to an arbitrary
     depth", J. Fluid Mech. 201, 243 (1989): the same map, at any fill.
   B. Budiansky, "Sloshing of liquids in circular canals and spherical tanks", J. Aerosp. Sci. 27,
-    161 (1960): the pendulums.
+    161 (1960): canals at any fill, and the forces on them.
   O. M. Faltinsen and A. N. Timokha, "Sloshing", Cambridge University Press, 2009.
 """
 
