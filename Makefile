@@ -12,7 +12,7 @@ PYTEST := $(BIN)/python -m pytest -n auto --dist worksteal
 export PYTHONDONTWRITEBYTECODE :=
 PIP := $(BIN)/python -m pip --disable-pip-version-check install --quiet --no-compile
 
-.PHONY: help report test quick everything search portability renders templates tables api lint clean
+.PHONY: help report test quick everything search benchmark portability renders templates tables api lint clean
 
 help:
 	@echo "make report       checks everything, draws the films, and writes one page: report/index.html (minutes)"
@@ -21,6 +21,7 @@ help:
 	@echo "make everything   runs the costly tests: real films, a notebook, a cluster (minutes)"
 	@echo "make lint         runs ruff, the type checker, and import-linter, which is for those who change something"
 	@echo "make search       makes 2,000 random runs, of which none may be wrong without saying so"
+	@echo "make benchmark    measures run times anew, and writes study, picture and tables (ten minutes, undisturbed)"
 	@echo "make renders      draws the animated pictures of the README anew"
 	@echo "make templates    writes the files of mjcf/ that a viewer opens, and the digests of its mechanics"
 	@echo "make tables       writes the tables of the documents anew"
@@ -43,6 +44,13 @@ everything: $(TOOLS)
 # -s shows the table.
 search: $(TOOLS)
 	MJBEER_EXAMPLES=2000 $(BIN)/python -m pytest -s tests/studies/stability/test_search.py -k wrong_and_silent
+
+# Nothing else should run meanwhile.
+benchmark: $(TOOLS)
+	$(BIN)/mjbeer benchmark --output benchmark
+	cp benchmark/study.json src/mjbeer/studies/benchmark/study.json
+	cp benchmark/work_precision.svg renders/work_precision.svg
+	$(BIN)/python tools/documents.py
 
 # The other tools go into build/, as docs/portability.md has it.
 portability: $(TOOLS)

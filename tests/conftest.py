@@ -1,7 +1,8 @@
-"""The environment of whoever runs the tests must not change what programs write, and when; and a fixture of several.
+"""The environment of whoever runs the tests must not change what programs write, and when; and a
+fixture of several.
 
-What the machine lacks is skipped, and counted; with MJBEER_EVERYTHING in the environment, it ends the tests instead,
-and any warning is an error but those that `pyproject.toml` lets pass.
+What the machine lacks is skipped, and counted; with MJBEER_EVERYTHING in the environment, it ends
+the tests instead, and any warning is an error but those that `pyproject.toml` lets pass.
 """
 
 import functools
@@ -15,11 +16,17 @@ import pytest
 from mjbeer.drawing import opengl
 from mjbeer.model import setting
 
-for each in ("FORCE_COLOR", "CLICOLOR_FORCE", "COLUMNS", "PYTHONUNBUFFERED", "PYTHONDONTWRITEBYTECODE"):
-    os.environ.pop(each, None)
+for variable in (
+    "FORCE_COLOR",
+    "CLICOLOR_FORCE",
+    "COLUMNS",
+    "PYTHONUNBUFFERED",
+    "PYTHONDONTWRITEBYTECODE",
+):
+    os.environ.pop(variable, None)
 
-# Nothing of what is imported and collected, a million objects, is rubbish, and to look through it again and again takes
-# a tenth of all the time.
+# Nothing of what is imported and collected, a million objects, is rubbish, and to look through it
+# again and again takes a tenth of all the time.
 gc.disable()
 
 _no_opengl = functools.cache(opengl.problem)
@@ -27,17 +34,21 @@ _no_opengl = functools.cache(opengl.problem)
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """If everything is to be there, take warnings for errors, and end the tests with a list of what is not there."""
+    """If everything is to be there, take warnings for errors, and end the tests with a list of what
+    is not there."""
     if not os.environ.get("MJBEER_EVERYTHING"):
         return
-    config.getini("filterwarnings").insert(0, "error")  # below the others, of which the last that fits decides
+    # Below the others, of which the last that fits decides.
+    config.getini("filterwarnings").insert(0, "error")
     if not hasattr(config, "workerinput"):  # and not once more in each worker
         from mjbeer.studies.benchmark.other_tools import absent
 
         lacking = [f"{name} is absent: {reason}" for name, reason in absent().items()]
         lacking += [reason for reason in (_no_opengl(),) if reason]
         if lacking:
-            raise pytest.UsageError("MJBEER_EVERYTHING is set, and not all is here:\n" + "\n".join(lacking))
+            raise pytest.UsageError(
+                "MJBEER_EVERYTHING is set, and not all is here:\n" + "\n".join(lacking)
+            )
 
 
 def pytest_collection_finish() -> None:

@@ -17,7 +17,9 @@ NO_SAMPLES = [[], [[0.0]], ["0"], [0.0, None], {0.0: 1.0}, np.array([1j]), 0.3]
 def test_a_number_is_finite_and_real(value: object) -> None:
     with pytest.raises(ParameterError) as caught:
         require.number("mass", value, "kg")
-    assert str(caught.value) == f"mass must be a finite number [kg], got {require.format_value(value)}"
+    assert (
+        str(caught.value) == f"mass must be a finite number [kg], got {require.format_value(value)}"
+    )
 
 
 def test_numbers_and_samples_of_any_kind_become_doubles() -> None:
@@ -31,7 +33,10 @@ def test_numbers_and_samples_of_any_kind_become_doubles() -> None:
 
 @pytest.mark.parametrize("value", NO_SAMPLES, ids=str)
 def test_samples_are_one_list_of_numbers(value: object) -> None:
-    with pytest.raises(ParameterError, match="time must be a list or a one-dimensional array of one or more numbers"):
+    with pytest.raises(
+        ParameterError,
+        match="time must be a list or a one-dimensional array of one or more numbers",
+    ):
         require.samples("time", value)
 
 
@@ -53,17 +58,23 @@ def test_an_error_lists_the_names(value: str) -> None:
     """And does not guess which of them was meant."""
     with pytest.raises(ParameterError) as caught:
         require.choice("integrator", value, ("Euler", "implicit", "implicitfast", "RK4"))
-    assert str(caught.value) == f"integrator must be one of 'Euler', 'implicit', 'implicitfast', 'RK4'; got {value!r}"
+    assert (
+        str(caught.value)
+        == f"integrator must be one of 'Euler', 'implicit', 'implicitfast', 'RK4'; got {value!r}"
+    )
 
 
 @pytest.mark.parametrize("value", ["", b"run.csv", None, 1])
 def test_a_path_is_the_name_of_a_file(value: object) -> None:
     with pytest.raises(ParameterError) as caught:
         require.path(value)
-    assert str(caught.value) == f"path must be the name of a file, got {require.format_value(value)}"
+    assert (
+        str(caught.value) == f"path must be the name of a file, got {require.format_value(value)}"
+    )
 
 
 @pytest.mark.parametrize("value", ["x" * 1000, [["deep"] * 100] * 100])
 def test_a_value_is_shown_in_one_short_line_and_a_number_as_a_plain_one(value: object) -> None:
     assert len(require.format_value(value)) < 500
-    assert {require.format_value(each) for each in (np.float64(0.1), np.array(0.1), 0.1)} == {"0.1"}
+    for tenth in (np.float64(0.1), np.array(0.1), 0.1):
+        assert require.format_value(tenth) == "0.1"

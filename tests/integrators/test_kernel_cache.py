@@ -1,4 +1,5 @@
-"""Compiled kernels are kept by all files that their code comes from, and nobody else's are kept with them."""
+"""Compiled kernels are kept by all files that their code comes from, and nobody else's are kept
+with them."""
 
 import ast
 import importlib
@@ -20,29 +21,34 @@ from mjbeer.model import setting
 pytestmark = pytest.mark.slow
 
 PACKAGE = pathlib.Path(mjbeer.__file__).parent
-KERNEL = """
+CALLEE = """
 from mjbeer.integrators.compiling import kernel
-from mjbeer.integrators.gauss_jackson.method import _add
+
+@kernel
+def scaled(term):
+    return 2 * term
+"""
+CALLER = """
+from mjbeer.integrators.compiling import kernel
+from mjbeer.integrators.callee import scaled
 
 @kernel
 def add(total, term):
-    _add(total, term)
-    return total[0]
+    return total + scaled(term)
 """
-METHOD = pathlib.Path("integrators/gauss_jackson/method.py")
 ADD = """
-import numpy as np
-from mjbeer.simulation.kernel import add
-print(add(np.array([1.0, 0.0]), 2.0), *add.stats.cache_hits.values())
+from mjbeer.simulation.caller import add
+print(add(1.0, 3.0), *add.stats.cache_hits.values())
 """
 
 
 @pytest.fixture
 def package(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> pathlib.Path:
-    """A copy of the package with one more kernel, which calls a function of another file."""
+    """A copy of the package with two more kernels, of which one calls that of another file."""
     copied = tmp_path / "mjbeer"
     shutil.copytree(PACKAGE, copied, ignore=shutil.ignore_patterns("__pycache__"))
-    (copied / "simulation" / "kernel.py").write_text(KERNEL)
+    (copied / "integrators" / "callee.py").write_text(CALLEE)
+    (copied / "simulation" / "caller.py").write_text(CALLER)
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
     monkeypatch.setenv("MJBEER_MJCF", str(setting.mjcf_folder()))
     monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
@@ -50,27 +56,24 @@ def package(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> pathlib.
 
 
 def in_a_new_process(code: str) -> str:
-    return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.strip()
+    command = [sys.executable, "-c", code]
+    return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
 
 
-def change(path: pathlib.Path, old: str, new: str) -> None:
-    text = path.read_text()
-    assert text.count(old) == 1
-    path.write_text(text.replace(old, new))
-
-
+# Three processes that import numba, and the tests below find its likely causes.
+@pytest.mark.costly
 def test_a_change_in_the_file_of_a_callee_takes_effect(package: pathlib.Path) -> None:
-    assert in_a_new_process(ADD) == "3.0"
-    assert in_a_new_process(ADD) == "3.0 1", "the kernel was not loaded from the cache"
-    change(package / METHOD, "total[0] = value + term\n", "total[0] = value + 10 * term\n")
-    assert in_a_new_process(ADD) == "21.0"
+    assert in_a_new_process(ADD) == "7.0"
+    assert in_a_new_process(ADD) == "7.0 1", "the kernel was not loaded from the cache"
+    (package / "integrators" / "callee.py").write_text(CALLEE.replace("2 * term", "10 * term"))
+    assert in_a_new_process(ADD) == "31.0"
 
 
 def test_folders_of_other_sources_go_when_they_are_not_used_any_more(package: pathlib.Path) -> None:
     where = "from mjbeer.integrators.kernel_cache import FOLDER; print(FOLDER)"
     first = pathlib.Path(in_a_new_process(where))
     assert first.is_relative_to(package)
-    change(package / METHOD, "BLOCK = 1024\n", "BLOCK = 512\n")
+    (package / "integrators" / "callee.py").write_text(f"{CALLEE}\n")
     second = pathlib.Path(in_a_new_process(where))
     assert second != first
     assert first.exists(), "a process that has begun before the change may still write there"
@@ -103,8 +106,9 @@ def test_all_that_is_compiled_and_what_it_takes_from_other_files_is_in_the_hash(
         taken.add(path)
         names = set(function.py_func.__code__.co_names)
         for node in ast.walk(ast.parse(path.read_text())):
-            if isinstance(node, ast.ImportFrom) and any(alias.name in names for alias in node.names):
-                taken.add(pathlib.Path(str(importlib.import_module(str(node.module)).__file__)))
+            if isinstance(node, ast.ImportFrom) and names & {alias.name for alias in node.names}:
+                source = importlib.import_module(str(node.module))
+                taken.add(pathlib.Path(str(source.__file__)))
     assert PACKAGE / "integrators" / "gauss_jackson" / "weights.py" in taken
     assert PACKAGE / "model" / "mujoco_library.py" in taken
     ours = {path for path in taken if path.is_relative_to(PACKAGE)}
@@ -116,8 +120,10 @@ def test_every_kernel_is_kept_there_and_no_function_of_a_user() -> None:
     for name, function in compiled_functions().items():
         if function.stats.cache_path is not None:
             kept[name] = pathlib.Path(function.stats.cache_path)
-    assert {"integrators/dop853._advance", "integrators/gauss_jackson/method._advance"} <= set(kept)
-    assert all(folder.is_relative_to(kernel_cache.FOLDER) for folder in kept.values())
+    for integrator in ("integrators/dop853", "integrators/gauss_jackson"):
+        assert any(name.startswith(integrator) for name in kept)
+    for name, folder in kept.items():
+        assert folder.is_relative_to(kernel_cache.FOLDER), name
     assert os.environ.get("NUMBA_CACHE_DIR", "") == config.CACHE_DIR
     users = njit(cache=True)(in_a_new_process).stats.cache_path
     assert not pathlib.Path(users).is_relative_to(kernel_cache.FOLDER)

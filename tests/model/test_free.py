@@ -13,7 +13,7 @@ import pytest
 from mjbeer import Can, attach, build, exact, export, frozen, sliding, standing
 from mjbeer.cli.app import main
 from mjbeer.exceptions import ParameterError, TemplateError
-from mjbeer.model import free, looks, setting
+from mjbeer.model import free_numbers, looks, setting
 from mjbeer.studies.validation import standing_checks as measured
 from tests.support.scenes import METAL
 
@@ -25,17 +25,26 @@ def test_a_lying_can_has_the_inertia_of_its_parts(fill: float) -> None:
     spec = mujoco.MjSpec()
     exactly = mujoco.mjtMeshInertia.mjMESH_INERTIA_EXACT
     spec.add_mesh(name="beer", uservert=vertices.ravel(), userface=faces.ravel(), inertia=exactly)
-    spec.worldbody.add_body(name="beer").add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname="beer", density=1000)
+    spec.worldbody.add_body(name="beer").add_geom(
+        type=mujoco.mjtGeom.mjGEOM_MESH, meshname="beer", density=1000
+    )
     model = spec.compile()
-    inertia = free.lying_parameters(frozen(fill=fill, can=METAL))["inertial load", "diaginertia"]
+    inertia = free_numbers.lying_parameters(frozen(fill=fill, can=METAL))[
+        "inertial load", "diaginertia"
+    ]
     # The mesh is a polygon of 256 edges, and short of the circle by 6e-4.
     assert np.sort(inertia) == pytest.approx(np.sort(model.body("beer").inertia), rel=2e-3)
     sheet = 2 * math.pi * METAL.radius * 0.27
     wall = sheet * METAL.length
     end = sheet * METAL.radius / 2
-    across = wall * (METAL.radius**2 / 2 + METAL.length**2 / 12) + 2 * end * (METAL.radius**2 + METAL.length**2) / 4
-    assert free.transverse_inertia(METAL) == pytest.approx(across, rel=1e-12)
-    assert free.transverse_inertia(Can.hoop()) == pytest.approx(Can.hoop().inertia / 2 + 0.05 * 0.12**2 / 12, rel=1e-12)
+    across = (
+        wall * (METAL.radius**2 / 2 + METAL.length**2 / 12)
+        + 2 * end * (METAL.radius**2 + METAL.length**2) / 4
+    )
+    assert free_numbers.transverse_inertia(METAL) == pytest.approx(across, rel=1e-12)
+    assert free_numbers.transverse_inertia(Can.hoop()) == pytest.approx(
+        Can.hoop().inertia / 2 + 0.05 * 0.12**2 / 12, rel=1e-12
+    )
 
 
 def test_the_sensors_tell_the_slosh() -> None:
@@ -59,42 +68,61 @@ def test_the_sensors_tell_the_slosh() -> None:
         ("honey", 0.05, 1, None),
         ("glycerol", 0.016, 3, None),
         ("water", 0.014, 1, 1.0),
-        ("water", 0.014, 1, 0.99),  # damped so much that its bob, to be stable, would outweigh the liquid
+        (
+            "water",
+            0.014,
+            1,
+            0.99,
+        ),  # damped so much that its bob, to be stable, would outweigh the liquid
         ("water", 0.1, 5, 0.99),
         ("honey", 0.5, 5, None),
     ],
 )
-def test_a_thick_liquid_has_its_mass(liquid: str, fill: float, modes: int, ratio: float | None) -> None:
-    """And its centre of mass, as theory has the model; and a fixed part, which is a body that MuJoCo can move."""
+def test_a_thick_liquid_has_its_mass(
+    liquid: str, fill: float, modes: int, ratio: float | None
+) -> None:
+    """And its centre of mass, as theory has the model; and a fixed part, which is a body that
+    MuJoCo can move."""
     can = standing(liquid, fill, modes=modes, damping_ratio=ratio)
     model = build(can)
     masses, heights = liquid_parts(model)
     mass, first, _ = can.total_moments()
     assert masses.sum() == pytest.approx(can.mass, rel=1e-12)  # sums of a few numbers
     assert mass == pytest.approx(can.mass, rel=1e-12)
-    assert masses @ (heights - can.height / 2) == pytest.approx(first, rel=1e-9, abs=1e-12 * can.mass * can.height)
+    assert masses @ (heights - can.height / 2) == pytest.approx(
+        first, rel=1e-9, abs=1e-12 * can.mass * can.height
+    )
     assert model.body("liquid").mass[0] > 0.02 * can.mass
     assert model.body_inertia[1:].min() > 0
 
 
 def liquid_parts(model: mujoco.MjModel) -> tuple[np.ndarray, np.ndarray]:
-    """Return mass [kg] and height above the can's bottom [m] of all bodies of the liquid, at rest."""
+    """Return mass [kg] and height above the can's bottom [m] of all bodies of the liquid, at
+    rest."""
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
-    bodies = [body for body in range(model.nbody) if model.body(body).name.startswith(("liquid", "slosh"))]
+    bodies = [
+        body for body in range(model.nbody) if model.body(body).name.startswith(("liquid", "slosh"))
+    ]
     return model.body_mass[bodies], data.xipos[bodies, 2]
 
 
-@pytest.mark.parametrize(("name", "value"), [("rolling", "contact"), ("friction", 0.5), ("phi0", 1.0)])
+@pytest.mark.parametrize(
+    ("name", "value"), [("rolling", "contact"), ("friction", 0.5), ("phi0", 1.0)]
+)
 def test_a_standing_can_does_not_roll(name: str, value: object) -> None:
-    with pytest.raises(ParameterError, match=f"does not roll: it has none of .*, got .*{name!r}: {value!r}"):
+    with pytest.raises(
+        ParameterError, match=f"does not roll: it has none of .*, got .*{name!r}: {value!r}"
+    ):
         build(standing(), **{name: value})
 
 
 def test_a_number_that_would_be_overwritten_is_named(copy: pathlib.Path) -> None:
     path = copy / "mechanics" / "standing.xml"
     path.write_text(path.read_text().replace('damping="4.0', 'damping="8.0'))
-    with pytest.raises(TemplateError, match=r"standing\.xml has numbers of its own in joint slosh1 damping, "):
+    with pytest.raises(
+        TemplateError, match=r"standing\.xml has numbers of its own in joint slosh1 damping, "
+    ):
         build(standing())
 
 
@@ -116,7 +144,9 @@ def test_the_template_of_a_lying_can_is_the_model_and_rolls_as_theory_says() -> 
     attach(spec, scene)
     made = spec.compile()
     for name in ("solref", "solimp", "solmix", "friction", "condim", "priority"):
-        assert np.allclose(getattr(template.geom("can"), name), getattr(made.geom("can-can"), name)), name
+        assert np.allclose(
+            getattr(template.geom("can"), name), getattr(made.geom("can-can"), name)
+        ), name
     data = mujoco.MjData(template)
     for key, phi0 in (("level", -scene.incline), ("swing", 1.0)):
         mujoco.mj_resetDataKeyframe(template, data, template.key(key).id)
@@ -133,7 +163,13 @@ def test_the_template_of_a_lying_can_is_the_model_and_rolls_as_theory_says() -> 
 @pytest.mark.parametrize("portable", [False, True])
 def test_a_standing_can_is_exported(portable: bool, tmp_path: pathlib.Path) -> None:
     """Portable, it has only what MuJoCo 3.3 knows."""
-    export(standing(modes=2), tmp_path / "can.xml", portable=portable, timestep=2e-3, integrator="implicitfast")
+    export(
+        standing(modes=2),
+        tmp_path / "can.xml",
+        portable=portable,
+        timestep=2e-3,
+        integrator="implicitfast",
+    )
     text = (tmp_path / "can.xml").read_text()
     model = mujoco.MjModel.from_xml_string(text)
     data = mujoco.MjData(model)
@@ -152,8 +188,9 @@ def test_a_standing_can_is_exported(portable: bool, tmp_path: pathlib.Path) -> N
 def test_the_command_line_exports_a_standing_can(tmp_path: pathlib.Path) -> None:
     said = tmp_path / "said.xml"
     meant = tmp_path / "meant.xml"
-    words = "export standing --liquid water --fill 0.3 --length 0.15 --modes 2 --damping-ratio 0.01 --timestep 2e-3"
-    assert main([*words.split(), "--portable", "--output", str(said)]) == 0
+    can = "standing --liquid water --fill 0.3 --length 0.15 --modes 2 --damping-ratio 0.01"
+    words = f"export {can} --timestep 2e-3 --portable"
+    assert main([*words.split(), "--output", str(said)]) == 0
     can = standing("water", 0.3, Can.sheet_metal(length=0.15), 2, 0.01)
     export(can, meant, timestep=2e-3, portable=True)
     assert said.read_text() == meant.read_text()
@@ -164,11 +201,12 @@ def test_the_rows_find_a_wrong_model(monkeypatch: pytest.MonkeyPatch) -> None:
     """Modes left out at their bobs instead of their pivots, and no breaking waves."""
     can = measured.water(2, 0.45)
     other = measured.water(2, 0.55)
-    # Differences of a step of 1e-4 give the model's stiffness to 1e-8, and errors of 2e-3 to 1e-5 of themselves.
+    # Differences of a step of 1e-4 give the model's stiffness to 1e-8, and errors of 2e-3 to 1e-5
+    # of themselves.
     assert measured.reaction_errors(can) == pytest.approx(measured.left_out(can), rel=1e-4)
     moments = other.total_moments()
     monkeypatch.setattr(type(can), "total_moments", lambda self: moments - [0, moments[1], 0])
     assert measured.reaction_errors(other) != pytest.approx(measured.left_out(other), rel=0.1)
     monkeypatch.undo()
-    monkeypatch.setattr(free, "BREAKING", 0.0)
+    monkeypatch.setattr(free_numbers, "BREAKING", 0.0)
     assert measured.thrown(measured.water(3), 5e-3, count=40) > 0

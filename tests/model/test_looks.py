@@ -14,7 +14,12 @@ from mjbeer.theory.can import LENGTH, RADIUS
 from mjbeer.theory.segment import segment
 from tests.support.scenes import METAL
 
-TEMPLATES = {"sliding": sliding(can=METAL), "frozen": frozen(), "pendulum": pendulum(), "hoop": hoop()}
+TEMPLATES = {
+    "sliding": sliding(can=METAL),
+    "frozen": frozen(),
+    "pendulum": pendulum(),
+    "hoop": hoop(),
+}
 # Vertices of the .obj files have 6 digits, lengths in the templates 10.
 WRITTEN = 5e-6
 # What MuJoCo keeps in single precision: vertices.
@@ -55,22 +60,28 @@ def vertices(model: mujoco.MjModel, data: mujoco.MjData, name: str | None = None
 
 @pytest.mark.parametrize("name", TEMPLATES)
 def test_a_template_s_own_scene_is_drawn_as_the_template(name: str) -> None:
-    model, one = written(name)
-    built, other = shown(TEMPLATES[name], "contact" if name == "hoop" else "equality")
+    model, data = written(name)
+    built, built_data = shown(TEMPLATES[name], "contact" if name == "hoop" else "equality")
     assert drawn(model) == drawn(built)
     for element in drawn(model):
-        assert model.geom(element).matid == built.geom(element).matid
-        if model.geom(element).type == mujoco.mjtGeom.mjGEOM_MESH:  # a mesh's axes are arbitrary if it is symmetric
-            assert np.allclose(vertices(model, one, element), vertices(built, other, element), atol=WRITTEN * LENGTH), (
-                element
-            )
+        geom = model.geom(element)
+        expected = built.geom(element)
+        assert geom.matid == expected.matid, element
+        if geom.type == mujoco.mjtGeom.mjGEOM_MESH:
+            # Its axes are arbitrary if it is symmetric, and so its vertices are compared.
+            apart = vertices(model, data, element) - vertices(built, built_data, element)
+            assert np.abs(apart).max() < WRITTEN * LENGTH, element
         else:
-            assert np.allclose(one.geom(element).xpos, other.geom(element).xpos, atol=WRITTEN * RADIUS), element
-            assert np.allclose(one.geom(element).xmat, other.geom(element).xmat, atol=WRITTEN), element
-            assert np.allclose(model.geom(element).size, built.geom(element).size, atol=WRITTEN), element
-    for element in CAMERAS:
-        assert np.allclose(one.camera(element).xpos, other.camera(element).xpos, atol=WRITTEN)
-        assert np.allclose(one.camera(element).xmat, other.camera(element).xmat, atol=WRITTEN)
+            pose = data.geom(element)
+            expected_pose = built_data.geom(element)
+            assert np.allclose(pose.xpos, expected_pose.xpos, atol=WRITTEN * RADIUS), element
+            assert np.allclose(pose.xmat, expected_pose.xmat, atol=WRITTEN), element
+            assert np.allclose(geom.size, expected.size, atol=WRITTEN), element
+    for camera in CAMERAS:
+        pose = data.camera(camera)
+        expected_pose = built_data.camera(camera)
+        assert np.allclose(pose.xpos, expected_pose.xpos, atol=WRITTEN), camera
+        assert np.allclose(pose.xmat, expected_pose.xmat, atol=WRITTEN), camera
     # The drawn wall is outside of the radius, so the board is lower than the surface by as much.
     board = model.geom("board")
     assert board.pos[2] + board.size[2] == pytest.approx(-looks.WALL * RADIUS, rel=1e-9)
@@ -83,12 +94,14 @@ def test_every_fill_can_be_drawn(fill: float, radius: float) -> None:
     load = Load(1.0, radius * segment(fill).offset, radius**2, fill)
     heights = vertices(*shown(Scene(can, load, 0.0), "reduced"))[:, 2] / radius
     assert heights.min() == pytest.approx(-looks.WALL, abs=1e-3)
-    assert heights.max() == pytest.approx(2 + looks.WALL, abs=0.01)  # the mark, a hair above the wall
+    # The mark is a hair above the wall.
+    assert heights.max() == pytest.approx(2 + looks.WALL, abs=0.01)
 
 
 @pytest.mark.parametrize("fill", [0.01, 0.02, 0.1, 0.5, 0.9, 0.999])
 def test_the_load_is_the_true_segment_with_foam_on_it(fill: float) -> None:
-    """A vertex is on the circle; the surface is as wide and as high as eq. (32) has it; so is the centroid."""
+    """A vertex is on the circle; the surface is as wide and as high as eq. (32) has it; so is the
+    centroid."""
     model, data = shown(sliding(0.0, fill=fill), "reduced")
     there = vertices(model, data, "load") - data.body("can").xpos
     assert np.allclose(np.hypot(there[:, 0], there[:, 2]), RADIUS, rtol=SINGLE)
@@ -103,7 +116,8 @@ def test_the_load_is_the_true_segment_with_foam_on_it(fill: float) -> None:
 
 @pytest.mark.parametrize("radius", [RADIUS, 0.1])
 def test_a_stripe_of_the_board_is_a_quarter_turn(radius: float) -> None:
-    """And one begins at u = 0: so the can's mark comes round every four. The board has 10,000 radii each way."""
+    """And one begins at u = 0: so the can's mark comes round every four. The board has 10,000 radii
+    each way."""
     model, _ = shown(frozen(can=Can.sheet_metal(radius)))
     middle = model.geom("board").pos[0]
     half = model.geom("board").size[0]
@@ -117,7 +131,14 @@ def test_a_stripe_of_the_board_is_a_quarter_turn(radius: float) -> None:
 def test_marks_turn_with_the_can_or_are_not_there_and_ice_has_no_foam() -> None:
     found = {rolling: "can_mark" in drawn(shown(pendulum(), rolling)[0]) for rolling in ROLLINGS}
     assert found == {"reduced": False, "equality": True, "contact": True}
-    models = [shown(TEMPLATES[element])[0] for element in ("sliding", "frozen")]
-    assert ["foam" in drawn(model) for model in models] == [True, False]
-    assert [model.mat(int(model.geom("load").matid[0])).name for model in models] == ["beer", "ice"]
-    assert tuple(element for element in looks.TURNING if element in {*drawn(models[0]), "can_spokes"}) == looks.TURNING
+
+    def material(model: mujoco.MjModel) -> str:
+        return model.mat(int(model.geom("load").matid[0])).name
+
+    beer, _ = shown(TEMPLATES["sliding"])
+    ice, _ = shown(TEMPLATES["frozen"])
+    assert "foam" in drawn(beer)
+    assert "foam" not in drawn(ice)
+    assert material(beer) == "beer"
+    assert material(ice) == "ice"
+    assert set(looks.TURNING) <= {*drawn(beer), "can_spokes"}

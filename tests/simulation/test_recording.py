@@ -16,11 +16,13 @@ from mjbeer.simulation.stepped_model import SteppedModel
 from tests.support.scenes import METAL
 
 DRIFTS = ("energy_change", "swing_drift", "axis_drift")
-"""What is a drift is rounding itself, of energies of a size of 1."""
+"""Differences that are rounding themselves, of all the energy that swings to and fro."""
 
 
 @pytest.mark.parametrize("friction", [math.inf, 1e-3])
-@pytest.mark.parametrize("scene", [sliding(0.3, can=METAL), frozen(0.1), frozen(-0.3, can=METAL), pendulum()])
+@pytest.mark.parametrize(
+    "scene", [sliding(0.3, can=METAL), frozen(0.1), frozen(-0.3, can=METAL), pendulum()]
+)
 def test_the_compiled_record_is_the_same(scene: Scene, friction: float) -> None:
     """In pieces, to rounding. The other recorder looks for forces at more points in each step."""
     setting = Setting(integrator="GaussJackson", timestep=1e-3)
@@ -43,9 +45,9 @@ def test_the_compiled_record_is_the_same(scene: Scene, friction: float) -> None:
             assert mine == expected
         elif field.name in DRIFTS:
             assert mine == pytest.approx(expected, abs=1e-14 * size)
-        elif field.name == "rolling_ends_at":
+        elif field.name == "rolling_ends_at":  # between two looks. Measured: 5e-7 s
             assert mine == pytest.approx(expected, abs=1e-5)
-        elif field.name in ("lowest_normal", "needed_friction"):
+        elif field.name in ("lowest_normal", "needed_friction"):  # measured: 3e-4
             assert mine == pytest.approx(expected, rel=1e-3)
         else:
             assert mine == pytest.approx(expected, rel=1e-11), field.name

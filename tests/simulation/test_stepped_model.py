@@ -1,6 +1,5 @@
 """A model that is kept gives the bits of a new one, and no two threads have the same."""
 
-import math
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
@@ -9,10 +8,10 @@ import pytest
 from mjbeer import Scene, frozen, pendulum, sliding
 from mjbeer.exceptions import DivergenceError, ToleranceError
 from mjbeer.model.setting import Setting
-from mjbeer.simulation import stepped_model
 from mjbeer.simulation.methods import model_numbers
 from mjbeer.simulation.solve import solve
 from mjbeer.simulation.stepped_model import SteppedModel, kept_model
+from mjbeer.simulation.tolerance import Problem
 from tests.support.scenes import METAL
 
 SETTINGS = [
@@ -52,11 +51,19 @@ def bits(stepped: SteppedModel, setting: Setting) -> bytes:
 
 @pytest.mark.parametrize("setting", SETTINGS, ids=repr)
 def test_what_was_done_before_leaves_no_trace(setting: Setting) -> None:
-    stepped_model._kept.models.clear()
-    for scene in (*SCENES * 2, *DAMPED * 2):  # with damping and drag, and then without
-        for _ in range(2):  # the second time the model has the scene's numbers already
-            assert bits(kept(scene, setting), setting) == bits(new(scene, setting), setting)
-    assert len(stepped_model._kept.models) < len(SCENES)
+    models = set()
+
+    def assert_same_bits() -> None:
+        for scene in (*SCENES * 2, *DAMPED * 2):  # with damping and drag, and then without
+            expected = bits(new(scene, setting), setting)
+            for _ in range(2):  # the second time the model has the scene's numbers already
+                stepped = kept(scene, setting)
+                models.add(id(stepped.model))
+                assert bits(stepped, setting) == expected
+
+    with ThreadPoolExecutor(1) as thread:  # which has no models of other tests
+        thread.submit(assert_same_bits).result()
+    assert len(models) < len(SCENES)
 
 
 def test_each_thread_has_its_own() -> None:
@@ -70,7 +77,8 @@ def test_each_thread_has_its_own() -> None:
 
 
 def test_a_run_that_failed_leaves_no_trace(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("mjbeer.simulation.solve.EVALUATIONS", 100_000)  # soon, and not after millions
+    # It is given up soon, and not after millions.
+    monkeypatch.setattr("mjbeer.simulation.solve.EVALUATIONS", 100_000)
     coarse = Setting(integrator="Euler", timestep=1.0)
     failed = kept(SCENES[0], coarse)
     with pytest.raises(DivergenceError):
@@ -86,18 +94,23 @@ def test_a_run_that_failed_leaves_no_trace(monkeypatch: pytest.MonkeyPatch) -> N
 
 
 @pytest.mark.parametrize("scene", [sliding(), frozen()])
-def test_a_nudge_changes_the_energy_in_one_direction(scene: Scene) -> None:
-    """Position and rate could change it in opposite ways, and hide what rounding does beside a separatrix."""
-    from mjbeer.simulation.solve import _along_energy
+def test_a_nudge_changes_the_energy_in_one_direction(
+    scene: Scene, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Position and rate could change it in opposite ways, and hide what rounding does beside a
+    separatrix."""
+    problems: list[Problem] = []
 
-    swing = scene.oscillator
+    def note(_: object, problem: Problem, __: object) -> None:
+        problems.append(problem)
+
+    monkeypatch.setattr("mjbeer.simulation.solve.solve_to_tolerance", note)
     stepped = new(scene, SETTINGS[0])
+    place = stepped.model.nq - 1
     for phi0, phi_dot0 in ((1.0, 3.0), (-2.0, 3.0), (1.0, -3.0), (2.5, -0.1)):
         start = stepped.initial_state(phi0, phi_dot0)
-        signs = _along_energy(stepped.dynamics.derivative(start))
-        place = stepped.model.nq - 1
-        by_phi = -float(swing.drop(phi0 + 1e-6 * signs[place], phi0))
-        by_rate = math.copysign(1.0, signs[-1] * phi_dot0)
-        assert by_rate > 0
+        solve(stepped, SETTINGS[0], start, TIMES)
+        nudge = np.sign(problems[-1].nudged_start - start)
+        assert nudge[-1] * phi_dot0 > 0
         if phi_dot0 == -0.1:  # nearly at rest the torque is all of the acceleration
-            assert by_phi > 0
+            assert scene.oscillator.drop(phi0 + 1e-6 * nudge[place], phi0) < 0

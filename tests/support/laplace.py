@@ -1,9 +1,11 @@
-"""The slosh of a standing can by polynomials: Laplace's equation in the liquid's volume, pressures on its walls.
+"""The slosh of a standing can by polynomials: Laplace's equation in the liquid's volume, pressures
+on its walls.
 
-The potential is a sum of r P(r^2) Q(z) cos(angle) with polynomials P and Q, which knows no Bessel function and no
-hyperbolic one. Ritz's method makes K the integral of grad . grad over the volume, and S that of the product over the
-surface, over g: K a = omega^2 S a for the modes, and (K - omega^2 S) a = b in a shaken can, where b is the integral of
-the potential times the wall's normal velocity. So b is also the pressure's share of force and moment.
+The potential is a sum of r P(r^2) Q(z) cos(angle) with polynomials P and Q, which knows no Bessel
+function and no hyperbolic one. Ritz's method makes K the integral of grad . grad over the volume,
+and S that of the product over the surface, over g: K a = omega^2 S a for the modes, and (K -
+omega^2 S) a = b in a shaken can, where b is the integral of the potential times the wall's normal
+velocity. So b is also the pressure's share of force and moment.
 """
 
 import math
@@ -12,8 +14,10 @@ import numpy as np
 from scipy import linalg
 from scipy.special import eval_jacobi, roots_legendre
 
-RADIAL, VERTICAL = 13, 22
-"""Number of polynomials across and along the can: with two more of each nothing changes by 1e-11."""
+RADIAL = 13
+VERTICAL = 22
+"""Numbers of polynomials across and along the can: with two more of each nothing changes by
+1e-11."""
 
 
 class Volume:
@@ -21,22 +25,43 @@ class Volume:
 
     def __init__(self, depth: float) -> None:
         nodes, weights = roots_legendre(40)
-        self.r, self.wr = (nodes + 1) / 2, weights / 2
-        self.z, self.wz = depth / 2 * nodes, depth / 2 * weights
+        self.r = (nodes + 1) / 2
+        self.wr = weights / 2
+        self.z = depth / 2 * nodes
+        self.wz = depth / 2 * weights
         self.top = np.array([depth / 2])
 
         def across(r: np.ndarray) -> np.ndarray:
             return np.stack([r * eval_jacobi(k, 0, 1, 2 * r**2 - 1) for k in range(RADIAL)])
 
-        def slope(r: np.ndarray) -> np.ndarray:  # the derivative of Jacobi's polynomial is one as well
-            inner = [(k + 2) / 2 * eval_jacobi(k - 1, 1, 2, 2 * r**2 - 1) if k else 0 * r for k in range(RADIAL)]
-            return np.stack([eval_jacobi(k, 0, 1, 2 * r**2 - 1) + 4 * r**2 * inner[k] for k in range(RADIAL)])
+        def slope(
+            r: np.ndarray,
+        ) -> np.ndarray:  # the derivative of Jacobi's polynomial is one as well
+            inner = [
+                (k + 2) / 2 * eval_jacobi(k - 1, 1, 2, 2 * r**2 - 1) if k else 0 * r
+                for k in range(RADIAL)
+            ]
+            return np.stack(
+                [eval_jacobi(k, 0, 1, 2 * r**2 - 1) + 4 * r**2 * inner[k] for k in range(RADIAL)]
+            )
 
-        legendre = [np.polynomial.Legendre.basis(j, [-depth / 2, depth / 2]) for j in range(VERTICAL)]
-        along = lambda z: np.stack([each(z) for each in legendre])  # noqa: E731
-        rise = lambda z: np.stack([each.deriv()(z) for each in legendre])  # noqa: E731
-        self.across, self.slope, self.along, self.rise = across, slope, along, rise
-        r, z, ring = self.r, self.z, self.wr * self.r
+        legendre = [
+            np.polynomial.Legendre.basis(j, [-depth / 2, depth / 2]) for j in range(VERTICAL)
+        ]
+
+        def along(z: np.ndarray) -> np.ndarray:
+            return np.stack([polynomial(z) for polynomial in legendre])
+
+        def rise(z: np.ndarray) -> np.ndarray:
+            return np.stack([polynomial.deriv()(z) for polynomial in legendre])
+
+        self.across = across
+        self.slope = slope
+        self.along = along
+        self.rise = rise
+        r = self.r
+        z = self.z
+        ring = self.wr * r
 
         def product(values: np.ndarray, weight: np.ndarray) -> np.ndarray:
             return values * weight @ values.T
@@ -48,31 +73,38 @@ class Volume:
         self.stiffness = math.pi * volume
         upper = along(self.top)[:, 0]
         self.surface = math.pi * np.kron(product(across(r), ring), np.outer(upper, upper))
-        wall, lower = across(np.ones(1))[:, 0], along(-self.top)[:, 0]
+        wall = across(np.ones(1))[:, 0]
+        lower = along(-self.top)[:, 0]
         self.sideways = math.pi * np.kron(wall, along(z) @ self.wz)
-        tilted = math.pi * across(r) @ (ring * r)  # on the bottom the normal velocity is x, on a lid -x
+        # On the bottom the normal velocity is x, on a lid -x.
+        tilted = math.pi * across(r) @ (ring * r)
         self.tilting = math.pi * np.kron(wall, along(z) @ (self.wz * z)) + np.kron(tilted, lower)
         self.lid = -np.kron(tilted, upper)
         self.metacentre = math.pi / 4
 
     def modes(self, count: int) -> tuple[np.ndarray, np.ndarray]:
-        """Frequencies, shape (count,), and potentials in columns, with a^T S a = 1; sideways forces are positive."""
+        """Frequencies, shape (count,), and potentials in columns, with a^T S a = 1; sideways forces
+        are positive."""
         # 1/omega^2 is largest for the slowest, and 0 for what does not reach the surface.
         values, vectors = linalg.eigh(self.surface, self.stiffness)
-        omega, vectors = values[::-1][:count] ** -0.5, vectors[:, ::-1][:, :count]
+        omega = values[::-1][:count] ** -0.5
+        vectors = vectors[:, ::-1][:, :count]
         return omega, vectors * omega * np.sign(self.sideways @ vectors)
 
     def slosh(self, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Frequencies, masses and bobs' heights, from the poles of force and moment: rho (b . a)^2 = m_n omega_n^2."""
+        """Frequencies, masses and bobs' heights, from the poles of force and moment: rho (b . a)^2
+        = m_n omega_n^2."""
         omega, vectors = self.modes(count)
-        force, moment = self.sideways @ vectors, self.tilting @ vectors
+        force = self.sideways @ vectors
+        moment = self.tilting @ vectors
         return omega, (force / omega) ** 2, moment / force - omega**-2
 
     def reaction(self, omega: float) -> tuple[float, float, float]:
-        """Force, coupling and moment per acceleration; the last with the weight of the tilted liquid."""
+        """Force, coupling and moment per acceleration; the last with the weight of the tilted
+        liquid."""
         both = np.stack([self.sideways, self.tilting], axis=1)
-        found = both.T @ linalg.solve(self.stiffness - omega**2 * self.surface, both)
-        return found[0, 0], found[0, 1], found[1, 1] + self.metacentre / omega**2
+        response = both.T @ linalg.solve(self.stiffness - omega**2 * self.surface, both)
+        return response[0, 0], response[0, 1], response[1, 1] + self.metacentre / omega**2
 
     def held_inertia(self) -> float:
         """Moment of inertia under a lid."""
@@ -80,9 +112,12 @@ class Volume:
         return float(walls @ linalg.solve(self.stiffness, walls))
 
     def damping(self, count: int) -> np.ndarray:
-        """Damping ratios over sqrt(nu): the layers' dissipation over twice omega times the energy of the mode."""
+        """Damping ratios over sqrt(nu): the layers' dissipation over twice omega times the energy
+        of the mode."""
         omega, vectors = self.modes(count)
-        z, r, ratios = self.z, self.r, []
+        z = self.z
+        r = self.r
+        ratios = []
         for frequency, vector in zip(omega, vectors.T, strict=True):
             shape = vector.reshape(RADIAL, VERTICAL)
             wall = shape.T @ self.across(np.ones(1))[:, 0]

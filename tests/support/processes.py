@@ -1,7 +1,8 @@
 """The command line as users run it: in a process of its own, with signals and broken streams.
 
-Nothing here waits for a time: a process says on standard output that it has come to a place, and stays there. At the
-end is what processes of a study are given to do: each of them loads this module anew, and fast.
+Nothing here waits for a time: a process says on standard output that it has come to a place, and
+stays there. At the end is what processes of a study are given to do: each of them loads this module
+anew, and fast.
 """
 
 import contextlib
@@ -15,7 +16,8 @@ from collections.abc import Callable, Generator, Mapping, Sequence
 from typing import Any, TextIO
 
 PATIENCE = 600.0
-"""Time after which a process is taken to hang [s]: a guard, which no machine is slow enough to meet."""
+"""Time after which a process is taken to hang [s]: a guard, which no machine is slow enough to
+meet."""
 _MAIN = "import sys; from mjbeer.cli.app import main; sys.exit(main())"
 _CHECKOUT = pathlib.Path(__file__).parents[2]
 
@@ -28,10 +30,11 @@ def start(
     stdout: int | TextIO | None = subprocess.PIPE,
     preexec_fn: Callable[[], None] | None = None,
 ) -> Generator[subprocess.Popen[str]]:
-    """Start Python's `code`, by default `mjbeer`, with some words, in a session of its own, as a terminal does.
+    """Start Python's `code`, by default `mjbeer`, with some words, in a session of its own, as a
+    terminal does.
 
-    No signal is ignored in it, even if whoever runs the tests ignores some; `preexec_fn` comes after that. At the end
-    of the block, however it ends, all processes of the session are gone.
+    No signal is ignored in it, even if whoever runs the tests ignores some; `preexec_fn` comes
+    after that. At the end of the block, however it ends, all processes of the session are gone.
     """
 
     def prepare() -> None:
@@ -40,7 +43,13 @@ def start(
         if preexec_fn is not None:
             preexec_fn()
 
-    command = [sys.executable, "-P", "-c", f"import sys; sys.path.append({str(_CHECKOUT)!r}); {code}", *words]
+    command = [
+        sys.executable,
+        "-P",
+        "-c",
+        f"import sys; sys.path.append({str(_CHECKOUT)!r}); {code}",
+        *words,
+    ]
     with subprocess.Popen(
         command,
         start_new_session=True,
@@ -58,7 +67,8 @@ def start(
 
 
 def run(words: Sequence[str], *settings: Any, **streams: Any) -> tuple[int, str, str]:
-    """Exit status, standard output and standard error of what `start` starts with the same arguments."""
+    """Exit status, standard output and standard error of what `start` starts with the same
+    arguments."""
     with start(words, *settings, **streams) as process:
         out, err = process.communicate(timeout=PATIENCE)
     return process.returncode, out or "", err
@@ -70,7 +80,9 @@ def hear(process: subprocess.Popen[str], word: str) -> None:
     assert f"{word}\n" in process.stdout, process.communicate()[1]
 
 
-def interrupt(process: subprocess.Popen[str], *numbers: int, everybody: bool = True) -> tuple[int, str]:
+def interrupt(
+    process: subprocess.Popen[str], *numbers: int, everybody: bool = True
+) -> tuple[int, str]:
     """Send signals to all of its processes or to it alone; exit status and last words."""
     send = os.killpg if everybody else os.kill
     for number in numbers:
@@ -89,6 +101,11 @@ def work_and_sleep() -> dict[str, Any]:
     print("at work", flush=True)
     time.sleep(3600)
     return {}
+
+
+def hang_in_a_program() -> None:
+    """Start a program that hangs and ignores signals, and wait for it; the program says when it is there."""
+    subprocess.run(["sh", "-c", "trap '' INT TERM; echo at work; exec sleep 3600"], check=True)
 
 
 def draw_and_sleep(path: pathlib.Path) -> None:

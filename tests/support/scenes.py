@@ -2,10 +2,14 @@
 
 import math
 
+import mujoco
+import numpy as np
 from hypothesis import strategies as st
 
 from mjbeer import Can, Load, Scene, exact, frozen, hoop, pendulum, sliding
+from mjbeer.model.joints import to_coordinates
 from mjbeer.simulation.run import Run
+from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.trajectory import largest_error
 
 METAL = Can.sheet_metal()
@@ -38,7 +42,15 @@ def scenes(draw: st.DrawFn) -> Scene:
     return Scene(can, load, between(-math.pi / 3, math.pi / 3), attachment)
 
 
+def coordinates(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene) -> Coordinates:
+    """The state of a model as theory's coordinates, with one sample."""
+    state = np.concatenate([data.qpos, data.qvel])
+    return to_coordinates(model, scene, state[np.newaxis], np.array([data.time]))
+
+
 def error(run: Run) -> float:
     """The largest error of phi and u/a at the samples of a run [rad], as a tolerance bounds it."""
     start = run.phi0, run.scene.initial_axis(run.phi0, run.phi_dot0)[0]
-    return largest_error(run, exact(run.scene, run.time, run.phi0, run.phi_dot0), run.scene.can.radius, start)
+    return largest_error(
+        run, exact(run.scene, run.time, run.phi0, run.phi_dot0), run.scene.can.radius, start
+    )

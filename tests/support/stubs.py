@@ -6,21 +6,25 @@ from functools import partial
 import pytest
 
 from mjbeer import exact, paper, sliding
+from mjbeer.checks.check import Check
 from mjbeer.drawing import opengl, video
 from mjbeer.drawing.film import MotionFilm
 from mjbeer.exceptions import RenderingError
-from mjbeer.output import files, plots
+from mjbeer.output import files, jobs, plots
 from mjbeer.paper import stories
-from mjbeer.paper.checks import Check
-from mjbeer.paper.stories import Story
+from mjbeer.paper.stories import PlotSize, Story
 from mjbeer.report import page
 from mjbeer.studies.benchmark.points import SHIPPED, Benchmark
 from mjbeer.studies.validation import validate as validation
 
 
 def validate(monkeypatch: pytest.MonkeyPatch, **errors: float) -> None:
-    """Make the validation table one of rows with a quantity and an error each, and the bound 1e-3; audit nothing."""
-    made = [Check("stubs", name, lambda e=error: e, "a stub", 1e-3, "rad", "none") for name, error in errors.items()]
+    """Make the validation table one of rows with a quantity and an error each, and the bound 1e-3;
+    audit nothing."""
+    made = [
+        Check("stubs", name, lambda e=error: e, "a stub", 1e-3, "rad", "none")
+        for name, error in errors.items()
+    ]
     monkeypatch.setattr(validation, "checks", lambda: made)
     monkeypatch.setattr(paper, "claims", list)
 
@@ -28,7 +32,8 @@ def validate(monkeypatch: pytest.MonkeyPatch, **errors: float) -> None:
 def draw(monkeypatch: pytest.MonkeyPatch, fail_at: str = "") -> list[video.FilmJob]:
     """Make videos text files, and the one of a name fail; the films that were ordered so far.
 
-    There is OpenGL then, or so it seems, and the paper has a single story. Nothing is done in other processes.
+    There is OpenGL then, or so it seems, and the paper has a single story. Nothing is done in other
+    processes.
     """
     calls: list[video.FilmJob] = []
 
@@ -45,15 +50,26 @@ def draw(monkeypatch: pytest.MonkeyPatch, fail_at: str = "") -> list[video.FilmJ
 
     def few(folder: pathlib.Path) -> list[video.PlotJob]:
         names = [f"error-{case}" for case in Benchmark.load(SHIPPED).cases]
-        beside, names = video.PlotJob(plot, folder / "stability-more"), [*names, "stability-solref", "told"]
-        return [*(video.PlotJob(plot, folder / name, in_memory=True) for name in names), beside]
+        names += ["stability-solref", "told"]
+        jobs = [video.PlotJob(plot, folder / name, in_memory=True) for name in names]
+        return [*jobs, video.PlotJob(plot, folder / "stability-more")]
 
     film = MotionFilm(partial(exact, sliding(), [0.0, 0.1], 0.1), speed=0.5)
     monkeypatch.setattr(video.FilmJob, "write", filmed)
-    monkeypatch.setattr(video, "produce", lambda orders, _: [order.write() for order in orders])
+    monkeypatch.setattr(jobs, "run_jobs", lambda given, _: [job.work() for job in given])
     monkeypatch.setattr(opengl, "problem", lambda: None)
-    story = Story("told", "A story & a title", "", "A stub's story.", (1, 1, 4, 3), lambda panels: None, film)
+    story = Story(
+        "told",
+        "A story & a title",
+        "",
+        "A stub's story.",
+        PlotSize(1, 1, 4, 3),
+        lambda panels: None,
+        film,
+    )
     monkeypatch.setattr(stories, "STORIES", (story,))
     monkeypatch.setattr(page, "plot_jobs", few)
-    monkeypatch.setattr(video, "render", lambda trajectory, path, *_, **__: files.write(path, "film"))
+    monkeypatch.setattr(
+        video, "render", lambda trajectory, path, *_, **__: files.write(path, "film")
+    )
     return calls

@@ -1,4 +1,5 @@
-"""Damped motions against Taylor series, closed forms and limits; steady rolling and the modes about it."""
+"""Damped motions against Taylor series, closed forms and limits; steady rolling and the modes about
+it."""
 
 import json
 import math
@@ -18,7 +19,8 @@ from mjbeer.theory.equations import accelerations
 from tests.support import processes, taylor
 from tests.support.scenes import METAL, scenes
 
-# Sines, products and sums of some ten roundings an eps each, in up to a hundred steps; measured 6e-14 at most.
+# Sines, products and sums of some ten roundings an eps each, in up to a hundred steps; measured
+# 6e-14 at most.
 ANGLE = 1e-12
 # A few roundings.
 ROUNDING = 4e-15
@@ -34,7 +36,8 @@ def natural(scene: Scene) -> tuple[float, float]:
 def require_taylor(scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float) -> None:
     expected = taylor.motion(scene, time, phi0, phi_dot0)
     found = exact(scene, time, phi0, phi_dot0)
-    radius, clock = scene.can.radius, natural(scene)[0]
+    radius = scene.can.radius
+    clock, _ = natural(scene)
     size = max(1.0, float(np.abs(expected[:, 0]).max()), float(np.ptp(expected[:, 1])) / radius)
     rates = np.abs(expected[:, 2:]).max(axis=0) * [clock, clock / radius]
     bound = ANGLE * size * max(1.0, float(rates.max()))
@@ -47,17 +50,26 @@ def require_taylor(scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float)
 @pytest.mark.slow
 @taylor.NEEDED
 @settings(max_examples=25, deadline=None, derandomize=True)
-@given(scenes(), st.floats(-3, 3), st.floats(-8, 8), st.floats(-3, 3), st.sampled_from([0.0, 0.03]), st.booleans())
+@given(
+    scenes(),
+    st.floats(-3, 3),
+    st.floats(-8, 8),
+    st.floats(-3, 3),
+    st.sampled_from([0.0, 0.03]),
+    st.booleans(),
+)
 def test_any_motion_is_that_of_a_taylor_series(
     scene: Scene, phi0: float, swing: float, power: float, drag: float, law: bool
 ) -> None:
-    """Damping over six decades; the stronger it is, the shorter the time that a Taylor series can follow."""
+    """Damping over six decades; the stronger it is, the shorter the time that a Taylor series can
+    follow."""
     scene = replace(scene, attachment="sliding")
     clock, unit = natural(scene)
     linear = 10**power * unit
     damping = Damping(linear / 2, 0.3 * linear * clock, 0.1 * linear * clock**2) if law else linear
     scene = replace(scene, damping=damping, drag=drag * scene.mass / scene.can.radius)
-    share = scene.oscillator.base / natural(scene)[1] / natural(scene)[0]  # how light the load is to turn
+    clock, unit = natural(scene)
+    share = scene.oscillator.base / unit / clock  # how light the load is to turn
     swing *= min(1.0, math.sqrt(share))
     latest = 6 * clock * min(1.0, share / 10**power)
     require_taylor(scene, latest * np.array([0.0, 0.17, 0.5, 1.0]), phi0, swing / clock)
@@ -65,7 +77,12 @@ def test_any_motion_is_that_of_a_taylor_series(
 
 CASES = {
     "hardly damped": (sliding(damping=1e-6), 1.0, 0.0, 2.0),
-    "corners of both": (sliding(damping=Damping(1e-4, 1e-5, 1e-6), drag=0.01, can=METAL), 1.0, -40.0, 1.0),
+    "corners of both": (
+        sliding(damping=Damping(1e-4, 1e-5, 1e-6), drag=0.01, can=METAL),
+        1.0,
+        -40.0,
+        1.0,
+    ),
     "nothing linear": (sliding(damping=Damping(0, 1e-4, 0), drag=0.01), 1.0, 0.0, 2.0),
     "very stiff": (sliding(damping=1e3, drag=0.01), 1.0, 5.0, 1e-4),
     "uphill": (sliding(-0.5, damping=1e-3, drag=0.001), 0.3, 60.0, 1.0),
@@ -75,7 +92,9 @@ CASES = {
 @pytest.mark.slow
 @taylor.NEEDED
 @pytest.mark.parametrize(("scene", "phi0", "phi_dot0", "latest"), CASES.values(), ids=CASES.keys())
-def test_motion_is_that_of_a_taylor_series(scene: Scene, phi0: float, phi_dot0: float, latest: float) -> None:
+def test_motion_is_that_of_a_taylor_series(
+    scene: Scene, phi0: float, phi_dot0: float, latest: float
+) -> None:
     require_taylor(scene, np.linspace(0, latest, 5), phi0, phi_dot0)
 
 
@@ -89,84 +108,116 @@ def test_rates_have_the_derivatives_that_are_derived() -> None:
         if abs(state[1] + state[2]) < 1:  # near the corner of the drag
             continue
         values, jacobian = accelerations_of(*state)
-        step = 1e-5
+        step = (
+            1e-5  # the differences lose its square by curvature, and eps divided by it by rounding
+        )
         for variable in range(3):
             change = step * np.eye(3)[variable]
             ahead, _ = accelerations_of(*(state + change))
             behind, _ = accelerations_of(*(state - change))
             difference = (ahead - behind) / (2 * step)
-            assert jacobian[:, variable] == pytest.approx(difference, abs=1e-9 * (1 + np.abs(values).max()))
+            assert jacobian[:, variable] == pytest.approx(
+                difference, abs=1e-9 * (1 + np.abs(values).max())
+            )
 
 
 def test_balanced_load_is_two_inertias() -> None:
     """b = 0: the slip rate decays towards G/k, the common rate grows."""
-    time, c = np.linspace(0, 3, 7), 2e-4
+    time = np.linspace(0, 3, 7)
+    c = 2e-4
+    a = METAL.radius
     load = Load(0.3, 0.0, 1e-4)
     scene = Scene(METAL, load, 0.2, damping=c)
-    axle, a = (scene.mass + METAL.inertia / METAL.radius**2) * METAL.radius**2, METAL.radius
+    axle = (scene.mass + METAL.inertia / a**2) * a**2
+    whole = axle + load.inertia
     push = scene.mass * scene.gravity * a * math.sin(0.2)
-    rate, whole = c * (1 / axle + 1 / load.inertia), axle + load.inertia
+    rate = c * (1 / axle + 1 / load.inertia)
     steady = push / axle / rate
     slip = steady + (2 - steady) * np.exp(-rate * time)  # u_dot = 0 and phi_dot = -2 at the start
     slipped = steady * time - (2 - steady) * np.expm1(-rate * time) / rate
-    together = -2 * load.inertia / whole * time + push / whole * time**2 / 2  # (axle roll + I phi)/whole
+    # (axle roll + I phi)/whole
+    together = -2 * load.inertia / whole * time + push / whole * time**2 / 2
+
     motion = exact(scene, time, 1.0, -2.0)
+
     size = np.abs(motion.phi).max()
     assert motion.phi - 1 == pytest.approx(together - axle / whole * slipped, abs=ROUNDING * size)
-    assert motion.u / a == pytest.approx(together + load.inertia / whole * slipped, abs=ROUNDING * size)
+    assert motion.u / a == pytest.approx(
+        together + load.inertia / whole * slipped, abs=ROUNDING * size
+    )
     assert motion.u_dot / a - motion.phi_dot == pytest.approx(slip, rel=ROUNDING)
 
 
 def test_motion_seen_from_behind_and_without_damping() -> None:
-    scene, time = sliding(0.3, can=METAL, damping=Damping(1e-3, 1e-5), drag=0.01), np.linspace(0, 1, 5)
-    motion, behind = exact(scene, time, 1.0, 7.0), exact(replace(scene, incline=-0.3), time, -1.0, -7.0)
+    scene = sliding(0.3, can=METAL, damping=Damping(1e-3, 1e-5), drag=0.01)
+    time = np.linspace(0, 1, 5)
+
+    motion = exact(scene, time, 1.0, 7.0)
+    behind = exact(replace(scene, incline=-0.3), time, -1.0, -7.0)
     assert (behind.phi == -motion.phi).all()
     assert (behind.u == -motion.u).all()
-    plain, without = (exact(replace(scene, damping=each, drag=0.0), time, 1.0) for each in (0.0, Damping()))
+
+    plain = exact(replace(scene, damping=0.0, drag=0.0), time, 1.0)
+    without = exact(replace(scene, damping=Damping(), drag=0.0), time, 1.0)
     assert (plain.phi == without.phi).all()
 
 
 @pytest.mark.slow
 def test_unstable_balance() -> None:
-    """On level ground the top is an equilibrium; beside it rounding decides, and there is an error before it changes
-    phi by 1e-4, and not long before: here it grows tenfold in 0.13 s."""
+    """On level ground the top is an equilibrium; beside it rounding decides, and there is an error
+    before it changes phi by 1e-4, and not long before: here it grows tenfold in 0.13 s."""
     scene = sliding(0.0, damping=1e-3)
     assert (exact(scene, [0.0, 9.0], 3 * math.pi).phi == 3 * math.pi).all()
-    with pytest.raises(ToleranceError, match=r"phi is not known later than at \d.* s: rounding of start and scene"):
+    with pytest.raises(
+        ToleranceError, match=r"phi is not known later than at \d.* s: rounding of start and scene"
+    ):
         exact(scene, 3.0, math.nextafter(math.pi, 0) - 1e-15)
-    start, known = math.pi - 1e-13, 0.0
+    start = math.pi - 1e-13
     with pytest.raises(ToleranceError):
         exact(scene, 2.0, start)
+    known = 0.0
     for time in np.linspace(0.5, 2.0, 31):
         try:
             motion = exact(scene, time, start)
         except ToleranceError:
             break
         known = float(time)
-        assert abs(exact(scene, time, start + 4.4e-16).phi[0] - motion.phi[0]) < 1e-3
+        assert abs(exact(scene, time, start + 4.4e-16).phi[0] - motion.phi[0]) < 1e-4
     assert known > 0.8
 
 
 @pytest.mark.slow
 @taylor.NEEDED
 def test_an_axis_that_hardly_moves_keeps_its_digits_under_a_fast_load() -> None:
-    """Its speed changes sign in most turns of a load that is a hundred times as fast, whose steps a corner must end."""
+    """Its speed changes sign in most turns of a load that is a hundred times as fast, whose steps a
+    corner must end."""
     can = Can(0.16774472, 0.60388099, 0.2195832373, 0.00550709956)
     scene = Scene(can, Load(52.892768, 0.0014955071, 0.7378145), 1.39933904, drag=730.309)
     time = np.array([7.7e-4, 3.29e-3])
     expected = taylor.motion(scene, time, -3.19918658, -45535.5727)
     found = exact(scene, time, -3.19918658, -45535.5727)
-    assert found.u / can.radius == pytest.approx((expected[:, 1] / can.radius).astype(float), abs=ANGLE)
+    assert found.u / can.radius == pytest.approx(
+        (expected[:, 1] / can.radius).astype(float), abs=ANGLE
+    )
+
+
+TOO_LONG = [
+    pytest.param(1e-6, 0.0, 0.0, id="swings"),
+    # The steps are counted as those of the swings, and it takes two seconds to use them up.
+    pytest.param(1e-3, 1e-3, 1e6, id="turns", marks=pytest.mark.costly),
+]
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("damping", "drag", "phi_dot0"), [(1e-3, 1e-3, 1e6), (1e-6, 0.0, 0.0)])
+@pytest.mark.parametrize(("damping", "drag", "phi_dot0"), TOO_LONG)
 def test_what_takes_too_long_is_refused_and_until_when_it_can_be_followed(
     damping: float, drag: float, phi_dot0: float
 ) -> None:
-    """Turns and swings, which can then be followed until the time that was named."""
+    """It can then be followed until the time that was named."""
     scene = sliding(damping=damping, drag=drag)
-    with pytest.raises(ToleranceError, match=r"too many steps: .* it can be followed until") as refused:
+    with pytest.raises(
+        ToleranceError, match=r"too many steps: .* it can be followed until"
+    ) as refused:
         exact(scene, 1e4, 1.0, phi_dot0)
     until = float(str(refused.value).split()[-2])
     assert np.isfinite(exact(scene, until, 1.0, phi_dot0).phi).all()
@@ -175,7 +226,8 @@ def test_what_takes_too_long_is_refused_and_until_when_it_can_be_followed(
 @pytest.mark.slow
 @pytest.mark.parametrize("c", [3e-5, 1e-1])
 def test_what_dies_away_is_followed_to_steady_rolling(c: float) -> None:
-    """The weaker damping starts with so many swings that as many in the rest could not be followed."""
+    """The weaker damping starts with so many swings that as many in the rest could not be
+    followed."""
     scene = sliding(damping=c)
     motion = exact(scene, 1e4, 1.0)
     assert motion.phi[0] == pytest.approx(scene.terminal_tilt(), abs=ANGLE)
@@ -183,8 +235,9 @@ def test_what_dies_away_is_followed_to_steady_rolling(c: float) -> None:
 
 
 def test_a_correction_that_does_not_square_the_error_is_made_again() -> None:
-    """Drag that holds the axis nearly still leaves corners beside the ends of steps, where Newton's method is slower:
-    with one correction less, roll is 1.3e-8 rad off. Expected is what steps with a tenth of the error give."""
+    """Drag that holds the axis nearly still leaves corners beside the ends of steps, where Newton's
+    method is slower: with one correction less, roll is 1.3e-8 rad off. Expected is what steps with
+    a tenth of the error give."""
     can = Can(4.30961039959089, 12.92883119877267, 57.396512594314174, 533.0053042100473)
     load = Load(2330.2253124251843, 0.42231642502907396)
     law = Damping(0.0, 1467.6514717634452, 127937.00677462741)
@@ -193,27 +246,42 @@ def test_a_correction_that_does_not_square_the_error_is_made_again() -> None:
 
 
 def balanced() -> list[list[float]]:
-    """phi and u/a of 200 loads without inertia that are nearly balanced, with drag: phi_dot + w is their rounding."""
-    random, found = np.random.default_rng(3), []
+    """phi and u/a of 200 loads without inertia that are nearly balanced, with drag: phi_dot + w is
+    their rounding."""
+    random = np.random.default_rng(3)
+    angles = []
     for _ in range(200):
-        mass, load, offset, incline, drag = random.uniform([-1, -2, -12, -0.4, -3], [0, -1, -8, 0.4, 0])
-        can = Can(0.033, 0.099, 10**mass, 6e-4 * 10**mass)
-        scene = Scene(can, Load(10**load, 10**offset), incline, drag=10**drag)
-        motion = exact(scene, 1e-5, random.uniform(-3, 3))
-        found.append([float(motion.phi[0]), float(motion.u[0] / can.radius)])
-    return found
+        can_mass = 10 ** random.uniform(-1, 0)
+        load = Load(10 ** random.uniform(-2, -1), 10 ** random.uniform(-12, -8))
+        incline = random.uniform(-0.4, 0.4)
+        drag = 10 ** random.uniform(-3, 0)
+        phi0 = random.uniform(-3, 3)
+        can = Can(0.033, 0.099, can_mass, 6e-4 * can_mass)
+        motion = exact(Scene(can, load, incline, drag=drag), 1e-5, phi0)
+        angles.append([float(motion.phi[0]), float(motion.u[0] / can.radius)])
+    return angles
 
 
-@pytest.mark.slow
+# Four seconds, for a fault that only another order of BLAS's sums could bring back.
+@pytest.mark.costly
 def test_nearly_balanced_loads_are_followed_alike_on_other_processors() -> None:
-    """BLAS sums as on this processor, and in another process as on any of x86; another BLAS sums in one order."""
-    code = "import json; from tests.theory.test_damped_motion import balanced; print(json.dumps(balanced()))"
-    with processes.start([], code, os.environ | {"OPENBLAS_CORETYPE": "Prescott"}) as process:
-        here, there = balanced(), json.loads(process.communicate(timeout=processes.PATIENCE)[0])
-    assert np.abs(np.array(here) - there).max() < 1e-10
+    """BLAS sums as on this processor, and in another process as on any of x86; another BLAS sums in
+    one order. Measured: 6e-14 rad apart."""
+    code = """
+import json
+from tests.theory.test_damped_motion import balanced
+print(json.dumps(balanced()))
+"""
+    environment = os.environ | {"OPENBLAS_CORETYPE": "Prescott"}
+    _, printed, _ = processes.run([], code, environment)
+    assert np.abs(np.array(balanced()) - json.loads(printed)).max() < ANGLE
 
 
-LAWS = {"linear": 2e-3, "every power": Damping(1e-3, 1e-5, 1e-7), "no linear part": Damping(0, 1e-4, 0)}
+LAWS = {
+    "linear": 2e-3,
+    "every power": Damping(1e-3, 1e-5, 1e-7),
+    "no linear part": Damping(0, 1e-4, 0),
+}
 
 
 @pytest.mark.parametrize("law", LAWS.values(), ids=LAWS.keys())
@@ -222,7 +290,9 @@ LAWS = {"linear": 2e-3, "every power": Damping(1e-3, 1e-5, 1e-7), "no linear par
 def test_nothing_accelerates(law: float | Damping, drag: float, incline: float) -> None:
     scene = sliding(incline, can=METAL, damping=law, drag=drag)
     found = accelerations(scene, scene.terminal_tilt(), 0.0, scene.terminal_speed())
-    assert np.array(found) / [scene.gravity, scene.gravity / 0.033] == pytest.approx([0, 0], abs=ROUNDING)
+    assert np.array(found) / [scene.gravity, scene.gravity / 0.033] == pytest.approx(
+        [0, 0], abs=ROUNDING
+    )
     assert scene.equilibrium() == scene.terminal_tilt()
     assert scene.acceleration() == 0
 
@@ -239,25 +309,38 @@ def test_tilt_is_that_of_the_frozen_can_and_speed_a_closed_form() -> None:
 
 
 def test_steady_rolling_ends_at_the_largest_incline() -> None:
-    for scene in (sliding(damping=1e-3), sliding(can=METAL, damping=Damping(1e-3, 1e-5), drag=0.05)):
+    for scene in (
+        sliding(damping=1e-3),
+        sliding(can=METAL, damping=Damping(1e-3, 1e-5), drag=0.05),
+    ):
         limit = scene.largest_incline()
         assert limit < math.pi / 2
         assert replace(scene, incline=limit * (1 - 1e-9)).terminal_tilt() > 0
         above = replace(scene, incline=limit * (1 + 1e-9))
-        for ask in (above.terminal_speed, above.terminal_tilt, above.modes, above.frequency, above.equilibrium):
-            with pytest.raises(NoEquilibriumError, match=rf"only up to {math.degrees(limit):.1f} degrees"):
+        for ask in (
+            above.terminal_speed,
+            above.terminal_tilt,
+            above.modes,
+            above.frequency,
+            above.equilibrium,
+        ):
+            with pytest.raises(
+                NoEquilibriumError, match=rf"only up to {math.degrees(limit):.1f} degrees"
+            ):
                 ask()
     assert sliding(1.4, drag=0.01).largest_incline() == math.pi / 2
-    assert sliding(1.4, drag=0.01).terminal_tilt() == pytest.approx(-1.4, rel=ROUNDING)  # the load hangs down
+    hanging = sliding(1.4, drag=0.01).terminal_tilt()
+    assert hanging == pytest.approx(-1.4, rel=ROUNDING)
 
 
 @pytest.mark.slow
 @settings(max_examples=60, deadline=None, derandomize=True)
-@given(scenes(), st.floats(-3, 3), st.sampled_from([0.0, 1.0, 100.0]), st.floats(-0.95, 0.95))
+@given(scenes(), st.floats(-3, 3), st.sampled_from([0.0, 1.0, 100.0]), st.floats(-0.94, 0.94))
 def test_modes_are_eigenvalues(scene: Scene, power: float, drag: float, steep: float) -> None:
     """Of the Jacobian of the accelerations, by central differences, over six decades of damping."""
     scene = replace(scene, attachment="sliding")
-    a, (clock, unit) = scene.can.radius, natural(scene)
+    a = scene.can.radius
+    clock, unit = natural(scene)
     scene = replace(scene, damping=10**power * unit, drag=drag * scene.mass / a)
     scene = replace(scene, incline=steep * scene.largest_incline())
     state = np.array([scene.terminal_tilt(), 0.0, scene.terminal_speed()])
@@ -266,55 +349,83 @@ def test_modes_are_eigenvalues(scene: Scene, power: float, drag: float, steep: f
         u_ddot, phi_ddot = accelerations(scene, state[0], state[1], state[2])
         return np.array([state[1], float(phi_ddot), float(u_ddot)])
 
-    # The law is linear and the drag a square, of which central differences are exact; phi's is of third order.
+    # The law is linear and the drag a square, of which central differences are exact; phi's is of
+    # third order.
     steps = np.array([1e-5, 1e-4 / clock, 0.1 * abs(state[2]) if drag else 1e-4 * a / clock])
-    assume(not drag or abs(steep) > 0.05)  # at rest the drag has a corner, of which central differences see a slope
-    jacobian = np.stack(
-        [(slope(state + step) - slope(state - step)) / (2 * step.sum()) for step in np.diag(steps)], axis=1
-    )
+    # At rest the drag has a corner, of which central differences see a slope.
+    assume(not drag or abs(steep) > 0.05)
+    columns = []
+    for step in np.diag(steps):
+        columns.append((slope(state + step) - slope(state - step)) / (2 * step.sum()))
+    jacobian = np.stack(columns, axis=1)
     units = np.array([1.0, 1 / clock, a / clock])
-    roots, expected = scene.modes(), np.sort_complex(np.linalg.eigvals(jacobian * units / units[:, np.newaxis]))
+    expected = np.sort_complex(np.linalg.eigvals(jacobian * units / units[:, np.newaxis]))
+    largest = np.abs(expected).max()
+    # A double root is as uncertain as the square root of the Jacobian's error.
     spread = np.abs(np.subtract.outer(expected, expected))[~np.eye(3, dtype=bool)].min()
-    assume(spread > 1e-2 * np.abs(expected).max())  # double roots are as uncertain as the root of a Jacobian
-    assert np.abs(roots - expected).max() < 1e-6 * np.abs(expected).max()
+    assume(spread > 1e-2 * largest)
+    # The differences err by 1e-10 to 1e-8, and roots a hundredth apart magnify that a hundredfold.
+    assert np.abs(scene.modes() - expected).max() < 1e-6 * largest
 
 
 def test_modes_of_weak_and_strong_damping() -> None:
-    """Both limits are known. A root is good to some eps, of which its real part of 1e-7 of it keeps eight digits."""
-    scene = sliding(can=METAL, damping=1e4)
-    m, b, a, tilt = scene.load.mass, scene.load.offset, scene.can.radius, scene.terminal_tilt()
-    mass, moment, inertia = scene.effective_mass, m * b * math.cos(tilt), scene.load.inertia + m * b**2
+    """Both limits are known. A root is good to some eps, of which its real part of 1e-7 of it keeps
+    eight digits."""
+    c = 1e4
+    scene = sliding(can=METAL, damping=c)
+    a = scene.can.radius
+    m = scene.load.mass
+    b = scene.load.offset
+    tilt = scene.terminal_tilt()
+    mass = scene.effective_mass
+    moment = m * b * math.cos(tilt)
+    inertia = scene.load.inertia + m * b**2
     k = m * b * scene.gravity * math.cos(scene.incline + tilt)
-    swinging, stiff = mass * inertia - moment**2, mass * a**2 + inertia - 2 * moment * a
-    strong = scene.modes()
-    assert strong[0].real == pytest.approx(-1e4 * stiff / (a**2 * swinging), rel=1e-12)
-    assert strong[1].real == pytest.approx(-(a**2) * k * (mass * a - moment) ** 2 / (2 * 1e4 * stiff**2), rel=1e-8)
-    assert abs(strong[1].imag) == pytest.approx(math.sqrt(k / stiff), rel=1e-12)
+    swinging = mass * inertia - moment**2
+    stiff = mass * a**2 + inertia - 2 * moment * a
+    decay = a**2 * k * (mass * a - moment) ** 2 / (2 * c * stiff**2)
+
+    together, swing, _ = scene.modes()
+
+    assert together.real == pytest.approx(-c * stiff / (a**2 * swinging), rel=1e-12)
+    assert swing.real == pytest.approx(-decay, rel=1e-8)
+    assert abs(swing.imag) == pytest.approx(math.sqrt(k / stiff), rel=1e-12)
     # (10) on level ground, where both tilts are 0, and (55) corrected on any
-    slow, fast = sliding(0.0, can=METAL, damping=1e-12), sliding(0.2, can=METAL, damping=1e4)
-    assert slow.frequency() == pytest.approx(sliding(0.0, can=METAL).frequency(), rel=1e-12)
-    assert fast.frequency() == pytest.approx(frozen(0.2, can=METAL).frequency(), rel=1e-12)
+    weak = sliding(0.0, can=METAL, damping=1e-12)
+    strong = sliding(0.2, can=METAL, damping=c)
+    assert weak.frequency() == pytest.approx(sliding(0.0, can=METAL).frequency(), rel=1e-12)
+    assert strong.frequency() == pytest.approx(frozen(0.2, can=METAL).frequency(), rel=1e-12)
 
 
 @pytest.mark.slow
 def test_mean_slip() -> None:
-    """Above the largest incline the load loops: the mean of the u-equation over a second, whatever phi does."""
-    scene, c, a = sliding(math.radians(30), damping=1e-2), 1e-2, 0.033
+    """Above the largest incline the load loops: the mean of the u-equation over a second, whatever
+    phi does."""
+    a = 0.033
+    c = 1e-2
+    scene = sliding(math.radians(30), damping=c)
+
     motion = exact(scene, [1.0, 2.0], 0.0, 112.7)
-    momentum = scene.mass * motion.u_dot - scene.load.mass * scene.load.offset * np.cos(motion.phi) * motion.phi_dot
+
+    moment = scene.load.mass * scene.load.offset
+    momentum = scene.mass * motion.u_dot - moment * np.cos(motion.phi) * motion.phi_dot
     slipped = np.diff(motion.u)[0] / a - np.diff(motion.phi)[0]
-    assert slipped + np.diff(momentum)[0] * a / c == pytest.approx(
-        scene.mean_slip_rate(), rel=1e-11
-    )  # 18 turns a second
+    mean = slipped + np.diff(momentum)[0] * a / c
+    # It slips by 3 rad, the difference of two angles of 184 rad. Measured: 5e-15.
+    assert mean == pytest.approx(scene.mean_slip_rate(), rel=ANGLE)
 
 
 def test_what_has_no_answer_says_so() -> None:
-    plain, damped, mixed = sliding(), sliding(damping=1e-3), sliding(damping=1e-3, drag=0.01)
+    plain = sliding()
+    damped = sliding(damping=1e-3)
+    mixed = sliding(damping=1e-3, drag=0.01)
     for ask in (plain.terminal_speed, plain.terminal_tilt, plain.modes, frozen().terminal_speed):
         with pytest.raises(ParameterError, match="damping and drag are 0"):
             ask()
     for scene in (plain, mixed, sliding(damping=Damping(1e-3, 1e-5)), frozen()):
-        with pytest.raises(ParameterError, match=r"no mean slip rate .* linear damping without drag, got"):
+        with pytest.raises(
+            ParameterError, match=r"no mean slip rate .* linear damping without drag, got"
+        ):
             scene.mean_slip_rate()
     for scene in (damped, mixed):
         with pytest.raises(ParameterError, match=r"no period.*scene\.modes\(\) has the rates"):
@@ -326,5 +437,5 @@ def test_what_has_no_answer_says_so() -> None:
         with pytest.raises(NoEquilibriumError, match="nothing restores the load"):
             scene.terminal_speed()
     heavy = Scene(Can.hoop(mass=100.0), Load(0.3, 0.01, 1e-6), 0.0, damping=1e-2)
-    with pytest.raises(NoLibrationError, match="no frequency: the load creeps back without a swing"):
+    with pytest.raises(NoLibrationError, match="the load creeps back without a swing"):
         heavy.frequency()

@@ -1,4 +1,5 @@
-"""The domain of scenes and how they are shown; the segment (32)-(37) by the paper's closed forms in 60 digits."""
+"""The domain of scenes and how they are shown; the segment (32)-(37) by the paper's closed forms in
+60 digits."""
 
 import math
 import pickle
@@ -23,7 +24,9 @@ def refuses(message: str, make: Callable[..., object], *arguments: object, **nam
         make(*arguments, **named)
 
 
-def wheel(can_mass: float = 0.1, load_mass: float = 0.2, offset: float = 0.5, **named: float) -> Scene:
+def wheel(
+    can_mass: float = 0.1, load_mass: float = 0.2, offset: float = 0.5, **named: float
+) -> Scene:
     """A hoop of radius 1 with a point load that slides, J(0) = m b^2 K/(m + K)."""
     return Scene(Can(1.0, 1.0, can_mass, can_mass), Load(load_mass, offset), 0.0, **named)
 
@@ -32,12 +35,27 @@ EDGES = [
     ("can radius", 1e-3, 1e2, lambda value: Can(radius=value)),
     ("can length", 1e-3, 1e2, lambda value: Can(length=value)),
     ("can mass", 1e-9, 1e4, lambda value: Can(mass=value)),
-    ("can inertia with a mass of 0.1 kg", None, 1e3 * 0.1 * 0.033**2, lambda value: Can(mass=0.1, inertia=value)),
+    (
+        "can inertia with a mass of 0.1 kg",
+        None,
+        1e3 * 0.1 * 0.033**2,
+        lambda value: Can(mass=0.1, inertia=value),
+    ),
     ("load mass", 1e-9, 1e4, lambda value: Load(value, 0.01)),
     ("load offset", 0.0, 1e2, lambda value: Load(1.0, value)),
     ("load offset", 1e-14, 1.0, lambda value: wheel(offset=value)),
-    ("load inertia", None, 2e2, lambda value: Scene(Can(1.0, 1.0, 0.1, 0.1), Load(0.2, 0.5, value), 0.0)),
-    ("mass of the can with a load of 0.125 kg", 1e-3 / 8, 1e3 / 8, lambda value: wheel(value, 1 / 8)),
+    (
+        "load inertia",
+        None,
+        2e2,
+        lambda value: Scene(Can(1.0, 1.0, 0.1, 0.1), Load(0.2, 0.5, value), 0.0),
+    ),
+    (
+        "mass of the can with a load of 0.125 kg",
+        1e-3 / 8,
+        1e3 / 8,
+        lambda value: wheel(value, 1 / 8),
+    ),
     ("incline", -math.radians(85), math.radians(85), sliding),
     ("gravity", 1e-3, 1e3, lambda value: sliding(gravity=value)),
     ("phi0", -1e4, 1e4, lambda value: exact(sliding(), 0.0, value)),
@@ -46,7 +64,9 @@ EDGES = [
 """Names, ends of their ranges, and what takes them."""
 
 
-@pytest.mark.parametrize(("name", "lowest", "highest", "make"), EDGES, ids=[name for name, *_ in EDGES])
+@pytest.mark.parametrize(
+    ("name", "lowest", "highest", "make"), EDGES, ids=[name for name, *_ in EDGES]
+)
 def test_the_domain_has_its_edges_and_nothing_beyond(
     name: str, lowest: float | None, highest: float, make: Callable[[float], object]
 ) -> None:
@@ -59,14 +79,23 @@ def test_the_domain_has_its_edges_and_nothing_beyond(
 
 
 def test_damping_and_drag_have_rates() -> None:
-    """At phi = pi a wheel of 0.1 kg with K = 0.2 kg and a load of 0.2 kg at half its radius resists least."""
+    """At phi = pi a wheel of 0.1 kg with K = 0.2 kg and a load of 0.2 kg at half its radius resists
+    least."""
     rate = (0.2 * 0.25 + 2 * 0.2 * 0.5 + 0.4) / (0.4 * 0.2 * 0.25 * 0.5)
     for damping in (0.999e9 / rate, 1.001e-12 / rate, Damping(quadratic=0.999e9 / rate / 2)):
         assert wheel(damping=damping).dissipates
     wheel(drag=0.19e9)
-    refuses("rate of damping must be 0, or between 1e-12 and 1e+09 [1/s], got", wheel, damping=1.01e9 / rate)
+    refuses(
+        "rate of damping must be 0, or between 1e-12 and 1e+09 [1/s], got",
+        wheel,
+        damping=1.01e9 / rate,
+    )
     refuses("rate of damping must be 0, or between", wheel, damping=Damping(quadratic=1e9 / rate))
-    refuses("rate of drag must be 0, or between 1e-12 and 1e+09 [1/s], got 1050000000.0", wheel, drag=0.21e9)
+    refuses(
+        "rate of drag must be 0, or between 1e-12 and 1e+09 [1/s], got 1050000000.0",
+        wheel,
+        drag=0.21e9,
+    )
 
 
 NOTHING = "next to nothing resists rotation at phi = 0"
@@ -79,13 +108,20 @@ REFUSED = [
     (FRACTION + "50", lambda: Load(0.2, 0.01, 1e-5, fill=50)),
     ("incline must be between -1.48353 and 1.48353 [rad], got 1.57", lambda: sliding(math.pi / 2)),
     ("incline must be between -1.48353 and 1.48353 [rad], got 10", lambda: sliding(10)),
-    ("attachment must be one of 'sliding', 'frozen'; got 'glued'", lambda: Scene(Can(), BEER, attachment="glued")),
+    (
+        "attachment must be one of 'sliding', 'frozen'; got 'glued'",
+        lambda: Scene(Can(), BEER, attachment="glued"),
+    ),
     ("can inertia must be 0 for a can without mass [kg m^2], got 1e-05", lambda: Can(inertia=1e-5)),
-    ("can inertia with a mass of 2 kg must be between 0 and 2.178 [kg m^2], got 2.2", lambda: Can(mass=2, inertia=2.2)),
+    (
+        "can inertia with a mass of 2 kg must be between 0 and 2.178 [kg m^2], got 2.2",
+        lambda: Can(mass=2, inertia=2.2),
+    ),
     (FRACTION + "0.0", lambda: sliding(fill=0.0)),
     (FRACTION + "0.009", lambda: sliding(fill=0.009)),
     (
-        "mass of the can with a load of 0.2 kg must be 0, or between 0.0002 and 200 [kg], got 0.0001",
+        "mass of the can with a load of 0.2 kg must be 0, or between 0.0002 and 200 [kg], "
+        "got 0.0001",
         lambda: wheel(1e-4),
     ),
     ("can must be a Can, got 'metal'", lambda: sliding(can="metal")),
@@ -94,7 +130,10 @@ REFUSED = [
     (NOTHING, lambda: Scene(Can(), Load.point(0.2, 0.02))),
     (NOTHING, lambda: Scene(Can(), Load.point(0.2, 0.0))),
     (NOTHING, lambda: Scene(Can(), Load.point(0.2, 0.033), attachment="frozen")),
-    ("viscosity must be between 1e-09 and 1e+06 [m^2/s], got 1e-10", lambda: liquid(viscosity=1e-10)),
+    (
+        "viscosity must be between 1e-09 and 1e+06 [m^2/s], got 1e-10",
+        lambda: liquid(viscosity=1e-10),
+    ),
 ]
 
 
@@ -117,8 +156,9 @@ def test_a_point_frozen_to_the_rim_holds_on_any_incline() -> None:
         (sliding(np.float64(0.17), fill=0.5, gravity=1.6), "sliding(incline=0.17, gravity=1.6)"),
         (
             Scene(Can(), BEER, damping=Damping(1e-3), attachment="sliding"),
-            "Scene(can=Can(radius=0.033, length=0.12, mass=0.0, inertia=0.0), load=Load(mass=0.2, offset=0.01, "
-            "inertia=1e-05, fill=None), damping=Damping(linear=0.001, quadratic=0.0, cubic=0.0))",
+            "Scene(can=Can(radius=0.033, length=0.12, mass=0.0, inertia=0.0), "
+            "load=Load(mass=0.2, offset=0.01, inertia=1e-05, fill=None), "
+            "damping=Damping(linear=0.001, quadratic=0.0, cubic=0.0))",
         ),
     ],
 )
@@ -134,9 +174,16 @@ mp.dps = 60
 
 # A double rounds beta once more than the formula has roundings.
 ROUNDING = 1e-15
-# The formulas subtract numbers that are alike where there is little beer. An error of eps in beta is one of
-# 3/2 eps/beta^2 in its rest in (33), 2/3 beta^3; of the rest in (37), about beta^2/5, it is 15 eps/beta^4.
-HALF_ANGLES = [2 * math.asin(0.1), *np.linspace(0.21, 3, 9), math.pi / 2, math.pi - 1e-3, math.pi - 1e-6]
+# The formulas subtract numbers that are alike where there is little beer. An error of eps in beta
+# is one of 3/2 eps/beta^2 in its rest in (33), 2/3 beta^3; of the rest in (37), about beta^2/5, it
+# is 15 eps/beta^4.
+HALF_ANGLES = [
+    2 * math.asin(0.1),
+    *np.linspace(0.21, 3, 9),
+    math.pi / 2,
+    math.pi - 1e-3,
+    math.pi - 1e-6,
+]
 """From a fill of 0.01, the least, on."""
 
 
@@ -176,11 +223,14 @@ def test_segment_is_the_closed_form(beta: float) -> None:
 
 @pytest.mark.parametrize("fill", [0.01, 0.05, 0.3, 0.5, 0.9, 1.0])
 def test_segment_s_width_is_its_integral(fill: float) -> None:
-    """The mean of x^2 over strips of length 2 sin(t) at the height cos(t) is (2/3A) times the integral of sin^4(t)."""
+    """The mean of x^2 over strips of length 2 sin(t) at the height cos(t) is (2/3A) times the
+    integral of sin^4(t)."""
     shape = segment(fill)
     fourth = mp.quad(lambda t: mp.sin(t) ** 4, [0, mp.mpf(shape.half_angle)])
     allowed = ROUNDING * (1 + 4 / shape.half_angle**2) ** 2
-    assert shape.mean_square_across == pytest.approx(float(2 * fourth / (3 * shape.area)), rel=allowed)
+    assert shape.mean_square_across == pytest.approx(
+        float(2 * fourth / (3 * shape.area)), rel=allowed
+    )
 
 
 def test_full_and_nearly_full() -> None:
@@ -193,17 +243,24 @@ def test_full_and_nearly_full() -> None:
 
 
 def test_load_scales_with_the_can() -> None:
-    shape, load = segment(0.3), Load.segment(radius=0.05, length=0.2, fill=0.3, density=900.0)
-    mass = 900.0 * 0.2 * 0.05**2 * shape.area  # (34)
-    assert (load.mass, load.offset, load.inertia) == pytest.approx(
-        (mass, 0.05 * shape.offset, mass * 0.05**2 * shape.inertia), rel=ROUNDING
-    )
+    shape = segment(0.3)
+    load = Load.segment(radius=0.05, length=0.2, fill=0.3, density=900.0)
+    assert load.mass == pytest.approx(900.0 * 0.2 * 0.05**2 * shape.area, rel=ROUNDING)  # (34)
+    assert load.offset == pytest.approx(0.05 * shape.offset, rel=ROUNDING)
+    assert load.inertia == pytest.approx(load.mass * 0.05**2 * shape.inertia, rel=ROUNDING)
 
 
 def test_sheet_metal_can() -> None:
-    a, length, thickness, density = 0.033, 0.12, 1e-4, 2700.0
-    can = Can.sheet_metal(a, length, thickness, density)
-    wall, end = 2 * math.pi * a * length * thickness * density, math.pi * a**2 * thickness * density
+    a = 0.033
+    length = 0.12
+    sheet = 1e-4 * 2700.0  # [kg/m^2]
+    wall = 2 * math.pi * a * length * sheet
+    end = math.pi * a**2 * sheet
+    can = Can.sheet_metal(a, length, thickness=1e-4, density=2700.0)
     assert can.mass == pytest.approx(wall + 2 * end, rel=ROUNDING)  # (30)
     assert can.inertia == pytest.approx(wall * a**2 + 2 * end * a**2 / 2, rel=ROUNDING)  # (31)
-    assert Can.hoop(radius=0.2, length=0.1, mass=3.0).inertia == pytest.approx(3.0 * 0.2**2, rel=ROUNDING)
+
+
+def test_a_hoop_has_all_its_mass_at_its_radius() -> None:
+    hoop = Can.hoop(radius=0.2, length=0.1, mass=3.0)
+    assert hoop.inertia == pytest.approx(3.0 * 0.2**2, rel=ROUNDING)

@@ -1,6 +1,5 @@
-"""Attaches a can to another world, fills it anew, and says what that world spoils."""
+"""Attaches a can to another world, and fills a can anew."""
 
-import math
 import warnings
 from collections.abc import Sequence
 
@@ -10,17 +9,13 @@ import numpy as np
 from mjbeer import require
 from mjbeer.exceptions import ParameterError, UnsupportedError, UntrustedWarning
 from mjbeer.model import looks, mjcf_file
-from mjbeer.model.free import BREAKING, attached_spec, bob_shares
-from mjbeer.model.model_numbers import stiffest
+from mjbeer.model.free import attached_spec
+from mjbeer.model.model_numbers import shortest_time_constant
 from mjbeer.model.setting import MUJOCO_INTEGRATORS
+from mjbeer.model.spoiling import mass_reasons, option_reasons
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.standing import MOST_MODES, Standing
 
-_LARGEST_TURN = 0.5
-"""Largest angle [rad] of a mode's oscillation in a timestep: semi-implicit integrators then have it
-1 % too fast."""
-_RK4_STABLE = 2.785
-"""Largest product of a timestep and a rate of decay with which RK4 is stable."""
 _SLOSHES = tuple(f"slosh{mode}" for mode in range(1, MOST_MODES + 1))
 _PARTS = ("can", "load", "swing", "liquid", *_SLOSHES, "slide", "phi")
 """Bodies and joints by which cans differ; the last two are those of a scene that `build` made."""
@@ -46,12 +41,12 @@ def attach(
     of the origin in a `body` of the parent; a can that is not `free` is fixed to it.
 
     `friction` is one coefficient, or two or three: sliding, torsional, rolling. `None` is MuJoCo's
-    default: 1, 0.005 and 0.0001. Of two geoms that meet, MuJoCo takes the larger ones, so that a
-    can slides with 0.2 only if the floor *and* the can have it, and the larger condim; the can has
-    3.
+    default: 1, 0.005 and 0.0001. Where two geoms meet, MuJoCo takes the larger coefficient of the
+    two: a can slides with 0.2 only if both the floor and the can have 0.2. It takes the larger
+    condim, too; that of the can is 3.
 
-    Options of the parent that are MuJoCo's defaults are taken as not chosen, and changed for the
-    whole world: to an elliptic cone; for a lying can to impratio 100 and RK4, too. An
+    An option of the parent that is MuJoCo's default is taken as not chosen, and is changed for the
+    whole world. Every can gets an elliptic cone, and a lying one impratio 100 and RK4 as well. An
     `UntrustedWarning` says what other options spoil.
 
     Raises:
@@ -62,16 +57,13 @@ def attach(
     require.instance("parent", parent, mujoco.MjSpec)
     require.instance("prefix", prefix, str)
     free = require.choice("free", free, (True, False))
-    if len(require.samples("pos", pos, "m")) != 3:
-        raise ParameterError(f"pos must have 3 numbers, got {require.format_value(pos)}")
-    if len(require.samples("quat", quat)) != 4 or not np.any(quat):
-        raise ParameterError(f"quat must have 4 numbers, not all 0, got {require.format_value(quat)}")
+    _require_place(pos, quat)
     if parent.body(f"{prefix}can") is not None:
-        raise ParameterError(f"the parent has a can of this prefix already: give another one, got {prefix!r}")
+        raise ParameterError(
+            f"the parent has a can of this prefix already: give another one, got {prefix!r}"
+        )
     require.choice("body", body, ["world"] if free else [there.name for there in parent.bodies])
-    coefficients = np.empty(0) if friction is None else require.samples("friction", np.atleast_1d(friction))
-    if len(coefficients) > 3 or np.any(coefficients < 0):
-        raise ParameterError(f"friction must be 1, 2 or 3 numbers of 0 or more, got {require.format_value(friction)}")
+    coefficients = _friction_coefficients(friction)
 
     child = attached_spec(can)
     if free:
@@ -81,24 +73,46 @@ def attach(
     touching = child.geom("can")
     touching.friction[: len(coefficients)] = coefficients
     if isinstance(can, Scene):
-        time_constant = stiffest(_integrator_name(parent.option), parent.option.timestep, contact=True)
+        time_constant = shortest_time_constant(
+            _integrator_name(parent.option), parent.option.timestep, contact=True
+        )
         touching.solref = [time_constant, 1]
-    reasons = _spoiling_options(parent.option, can) + _mass_bounds(parent.compiler, child)
+    reasons = option_reasons(parent.option, can) + mass_reasons(parent.compiler, child)
+
     # With options of its own MuJoCo would warn that the child's differ from the parent's.
     child.option = parent.option
     child.visual.map.zfar = parent.visual.map.zfar
     frame = parent.body(body).add_frame(pos=pos, quat=quat)
     attached = frame.attach_body(child.body("can"), prefix, "")
     if reasons:
-        warnings.warn(
-            f"the parent's options spoil the can: {'; '.join(reasons)}",
-            UntrustedWarning,
-            stacklevel=2,
-        )
+        message = f"the parent's options spoil the can: {'; '.join(reasons)}"
+        warnings.warn(message, UntrustedWarning, stacklevel=2)
     return attached
 
 
-def _choose_options(option: mujoco.MjOption, wanted: mujoco.MjOption, can: Standing | Scene) -> None:
+def _require_place(pos: Sequence[float], quat: Sequence[float]) -> None:
+    """Refuse what is no position or no quaternion."""
+    if len(require.samples("pos", pos, "m")) != 3:
+        raise ParameterError(f"pos must have 3 numbers, got {require.format_value(pos)}")
+    if len(require.samples("quat", quat)) != 4 or not np.any(quat):
+        value = require.format_value(quat)
+        raise ParameterError(f"quat must have 4 numbers, not all 0, got {value}")
+
+
+def _friction_coefficients(friction: float | Sequence[float] | None) -> np.ndarray:
+    """Return the coefficients of friction that are given, none to three."""
+    if friction is None:
+        return np.empty(0)
+    coefficients = require.samples("friction", np.atleast_1d(friction))
+    if len(coefficients) > 3 or np.any(coefficients < 0):
+        value = require.format_value(friction)
+        raise ParameterError(f"friction must be 1, 2 or 3 numbers of 0 or more, got {value}")
+    return coefficients
+
+
+def _choose_options(
+    option: mujoco.MjOption, wanted: mujoco.MjOption, can: Standing | Scene
+) -> None:
     """Change those options of a world that are MuJoCo's defaults to those that a can needs."""
     if option.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL:
         option.cone = wanted.cone
@@ -157,7 +171,7 @@ def refill(model: mujoco.MjModel, can: Standing | Scene, prefix: str = "can-") -
             geom.size[:2] = (cylinder.radius, (cylinder.high - cylinder.low) / 2)
     workspace = mujoco.MjData(model)
     mujoco.mj_setConst(model, workspace)
-    reasons = _spoiling_options(model.opt, can)
+    reasons = option_reasons(model.opt, can)
     if reasons:
         warnings.warn(
             f"the model's options spoil the can: {'; '.join(reasons)}",
@@ -166,16 +180,23 @@ def refill(model: mujoco.MjModel, can: Standing | Scene, prefix: str = "can-") -
         )
 
 
-def _require_same_can(model: mujoco.MjModel, can: Standing | Scene, prefix: str, spec: mujoco.MjSpec) -> None:
+def _require_same_can(
+    model: mujoco.MjModel, can: Standing | Scene, prefix: str, spec: mujoco.MjSpec
+) -> None:
     """Refuse a model whose can differs in size or parts from the specification of a can."""
-    needed = [name for name in _PARTS if spec.body(name) is not None or spec.joint(name) is not None]
+    needed = [
+        name for name in _PARTS if spec.body(name) is not None or spec.joint(name) is not None
+    ]
     kinds = (mujoco.mjtObj.mjOBJ_BODY, mujoco.mjtObj.mjOBJ_JOINT)
     there = [name for name in _PARTS if any(_has(model, kind, f"{prefix}{name}") for kind in kinds)]
     size = [can.can.radius, can.can.length / 2]  # written to MJCF with 6 digits or more
     has_parts = there == needed
-    if not has_parts or not np.allclose(model.geom(f"{prefix}can").size[:2], size, rtol=1e-6, atol=0):
+    if not has_parts or not np.allclose(
+        model.geom(f"{prefix}can").size[:2], size, rtol=1e-6, atol=0
+    ):
         raise ParameterError(
-            f"the model must have a can under the prefix {require.format_value(prefix)} with radius "
+            f"the model must have a can under the prefix {require.format_value(prefix)} "
+            "with radius "
             f"and half length {size} m and with {', '.join(needed)}; "
             f"it has {', '.join(there) or 'none'}, "
             f"got {require.format_value(can)}"
@@ -185,63 +206,3 @@ def _require_same_can(model: mujoco.MjModel, can: Standing | Scene, prefix: str,
 def _has(model: mujoco.MjModel, kind: mujoco.mjtObj, name: str) -> bool:
     """Return whether a model has an element of this kind and name."""
     return mujoco.mj_name2id(model, kind, name) >= 0
-
-
-def _spoiling_options(option: mujoco.MjOption, can: Standing | Scene) -> list[str]:
-    """Return what a world's options spoil."""
-    reasons = []
-    explicit = option.integrator == mujoco.mjtIntegrator.mjINT_RK4
-    if isinstance(can, Scene):
-        if not explicit:
-            reasons.append("with another integrator than RK4 the error of rolling is of the order of the timestep")
-    else:
-        turn = option.timestep * max(can.frequencies(), default=0.0)
-        if turn > _LARGEST_TURN:
-            reasons.append(
-                f"the timestep of {option.timestep:g} s is coarse: the fastest mode turns by {turn:.3g} rad in it, "
-                f"not {_LARGEST_TURN:g} or less"
-            )
-    decay = _fastest_decay(can)
-    if explicit and option.timestep * decay > _RK4_STABLE:
-        limit = f"{_RK4_STABLE / decay:.2g} s or less"
-        reasons.append(f"with RK4 its damping may diverge at a timestep of {option.timestep:g} s: give {limit}")
-    gravity = float(np.linalg.norm(option.gravity))
-    if not math.isclose(gravity, can.gravity, rel_tol=1e-6):
-        reasons.append(f"gravity is {gravity:.6g} m/s^2, and the can is made for {can.gravity:.6g}")
-    if decay > 0 and option.disableflags & int(mujoco.mjtDisableBit.mjDSBL_DAMPER):
-        reasons.append("with the flag damper disabled it has no damping")
-    return reasons
-
-
-def _mass_bounds(compiler: mujoco.MjsCompiler, child: mujoco.MjSpec) -> list[str]:
-    """Return what a parent's compiler does to the masses of a can."""
-    reasons = []
-    if compiler.settotalmass > 0:
-        reasons.append("settotalmass scales its masses")
-    moving = [body for body in child.bodies if body.mass > 0]
-    least = {
-        "boundmass": min(body.mass for body in moving),
-        "boundinertia": min(min(body.inertia) for body in moving),
-    }
-    for name, value in least.items():
-        if getattr(compiler, name) > value:
-            reasons.append(f"{name} raises what is less, from {value:.2g} on, once the world is saved and read again")
-    return reasons
-
-
-def _fastest_decay(can: Standing | Scene) -> float:
-    """Return the largest rate [1/s] at which damping slows the spin of a bob or of a can.
-
-    Linear damping has exactly this rate. Damping that grows with the rate is taken at the frequency
-    of the first mode, or at sqrt(g/a), which is an estimate.
-    """
-    if isinstance(can, Scene):
-        if not can.damping_law:
-            return 0.0
-        slope = can.damping_law.derivative(math.sqrt(can.gravity / can.can.radius))
-        about_axis = can.load.inertia + can.load.moment * can.load.offset
-        return float(slope * (1 / can.can.inertia + 1 / about_axis))
-    omega = can.frequencies()
-    breaking = BREAKING * omega[:1] ** 2 / omega
-    rates = 2 * (can.damping_ratios() * omega + breaking) / bob_shares(can)
-    return float(np.max(rates, initial=0.0))

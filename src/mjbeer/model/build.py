@@ -1,34 +1,28 @@
-"""Builds the MuJoCo model of a scene, for each of three ways of rolling.
+"""Builds the MuJoCo model of a can, for you: `build` and `specify`.
 
-The numbers of the scene are written into an MJCF file. A model that is only stepped contains
-joints, masses, forces and contact geoms. A model that is drawn has looks too.
+The numbers of a scene are written into the MJCF file of its attachment and its way of rolling. A
+model that is only stepped contains joints, masses, forces and contact geoms. A model that is drawn
+has looks too.
 """
 
-import copy
 import os
-import threading
 import warnings
 
 import mujoco
 
 from mjbeer import require
-from mjbeer.exceptions import ParameterError, TemplateError, UntrustedWarning
-from mjbeer.model import check, looks, mjcf_file
-from mjbeer.model.compiled_numbers import Views, write_compiled
+from mjbeer.exceptions import ParameterError, UntrustedWarning
+from mjbeer.model import looks, mjcf_file
+from mjbeer.model.check import check_drawn, check_file
 from mjbeer.model.free import standing_spec
 from mjbeer.model.joints import initial_joints
-from mjbeer.model.model_numbers import ModelNumbers, Structure
-from mjbeer.model.mujoco_library import quiet
+from mjbeer.model.model_numbers import ModelNumbers
 from mjbeer.model.setting import FRICTION, Integrator, Rolling, Setting
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.standing import Standing
 
 START = "start"
-"""The name of the keyframe."""
-_INERTIA_WARNING = int(mujoco.mjtWarning.mjWARN_INERTIA)
-_compiled_models: dict[Structure, mujoco.MjModel] = {}
-"""The compiled model of each structure, with the numbers of the scene that came first."""
-_compiling = threading.Lock()
+"""The name of the keyframe that a model of a scene has."""
 
 
 def build(
@@ -68,12 +62,12 @@ def build(
     `mjcf` is a folder that is read instead of mjbeer's own; without it, that of the environment
     variable MJBEER_MJCF counts. Everything except the parameters in its README is used unchanged.
     If the model's accelerations then differ from theory, an `UntrustedWarning` gives the file and
-    the largest difference.
+    the largest difference. Your folder is read at every call, and mjbeer's own mechanics once.
 
     Raises:
       ParameterError: if a name is unknown, or a number is invalid.
-      UnsupportedError: if MuJoCo cannot represent such a model, as for a massless can around a sliding
-        load.
+      UnsupportedError: if MuJoCo cannot represent such a model, as for a massless can around a
+        sliding load.
       TemplateError: if a file of MJCF is missing, or lacks an element into which a number is
         written.
     """
@@ -85,8 +79,8 @@ def build(
     add_start(spec, scene, phi0, phi_dot0)
     model = mjcf_file.compile_spec(spec)
     if setting.rolling == "equality":
-        _make_rigid(model)
-    _warn_of_edits(model if visuals else None, scene, setting)
+        make_rigid(model)
+    _warn_of_edits(scene, setting, model if visuals else None)
     return model
 
 
@@ -110,7 +104,8 @@ def specify(
     setting = Setting(rolling, integrator, timestep, friction=friction, mjcf=mjcf)
     spec = can_spec(scene, setting, visuals, free)
     if isinstance(scene, Scene):
-        _warn_of_edits(mjcf_file.compile_spec(spec.copy()) if visuals else None, scene, setting)
+        model = mjcf_file.compile_spec(spec.copy()) if visuals else None
+        _warn_of_edits(scene, setting, model)
     return spec
 
 
@@ -144,32 +139,24 @@ def _refuse_rolling(setting: Setting, phi0: float, phi_dot0: float) -> None:
     }
     defaults = {"rolling": Setting.rolling, "friction": FRICTION, "phi0": 0.0, "phi_dot0": 0.0}
     if given != defaults:
-        raise ParameterError(f"a standing can does not roll: it has none of {', '.join(given)}, got {given}")
+        names = ", ".join(given)
+        raise ParameterError(f"a standing can does not roll: it has none of {names}, got {given}")
 
 
-def _warn_of_edits(drawn: mujoco.MjModel | None, scene: Scene, setting: Setting) -> None:
-    """Warn the caller of `build` or `specify` if a file or a drawn model differs from theory."""
-    fault = check_both(scene, setting, drawn)
+def _warn_of_edits(scene: Scene, setting: Setting, drawn: mujoco.MjModel | None) -> None:
+    """Warn the caller of `build` or `specify` if a file, or a model that is drawn, is wrong."""
+    fault = check_file(setting.folder, scene.attachment, setting.rolling)
+    if fault is None and drawn is not None:
+        fault = check_drawn(drawn, scene, setting)
     if fault is not None:
         warnings.warn(f"{fault}; the model is as the file has it", UntrustedWarning, stacklevel=3)
-
-
-def check_both(scene: Scene, setting: Setting, drawn: mujoco.MjModel | None = None) -> str | None:
-    """Return what is wrong with a scene's mechanics file or drawn model, None if nothing is."""
-    fault = check.check_file(setting.folder, scene.attachment, setting.rolling)
-    if fault is not None or drawn is None:
-        return fault
-    fault = check.check_model(drawn, scene, setting)
-    if fault is not None:
-        return f"{setting.folder / 'looks'}, in {looks.name(scene)}, {fault}"
-    return None
 
 
 def rolling_spec(scene: Scene, setting: Setting, visuals: bool = False) -> mujoco.MjSpec:
     """Return the specification of a scene in a setting, with looks if `visuals` is True.
 
-    Without looks it lacks everything that is only drawn or measured, or exerts no force. A file
-    whose accelerations differ from theory is left whole.
+    Without looks it lacks everything that is only drawn or measured, or exerts no force. But a file
+    that is wrong keeps all it has, as any of it may be what makes the file wrong.
     """
     numbers = ModelNumbers(scene, setting, visuals)
     root = mjcf_file.read(numbers.path)
@@ -177,7 +164,7 @@ def rolling_spec(scene: Scene, setting: Setting, visuals: bool = False) -> mujoc
     mjcf_file.remove(root, "keyframe")  # It is that of the file's own scene.
     if visuals:
         return looks.drawn_spec(root, numbers.path, scene)
-    if check.check_file(setting.folder, scene.attachment, setting.rolling) is None:
+    if check_file(setting.folder, scene.attachment, setting.rolling) is None:
         mjcf_file.remove_unused(root, numbers.acting, scene.dissipates)
     return mjcf_file.parse_spec(root, numbers.path)
 
@@ -189,62 +176,12 @@ def add_start(spec: mujoco.MjSpec, scene: Scene, phi0: float, phi_dot0: float) -
     spec.add_key(name=START, qpos=qpos, qvel=qvel)
 
 
-def compiled_model(numbers: ModelNumbers) -> mujoco.MjModel:
-    """Return a new model to be stepped, into which `write_numbers` then writes its numbers.
+def make_rigid(model: mujoco.MjModel) -> None:
+    """Make the joint equality of a compiled model rigid, which MJCF cannot express.
 
-    Each structure is compiled once a process. The content of the mechanics file is part of the
-    structure, so that an edited file is compiled anew.
-
-    Raises:
-      TemplateError: if the mechanics file is missing, lacks an element, or has other accelerations
-        than theory.
-    """
-    with _compiling:
-        if numbers.structure not in _compiled_models:
-            _compiled_models[numbers.structure] = _compile_structure(numbers)
-        return copy.copy(_compiled_models[numbers.structure])
-
-
-def _compile_structure(numbers: ModelNumbers) -> mujoco.MjModel:
-    """Return the compiled model of a scene, to be stepped."""
-    fault = check_both(numbers.scene, numbers.setting)
-    if fault is not None:
-        raise TemplateError(fault)
-    model = mjcf_file.compile_spec(rolling_spec(numbers.scene, numbers.setting))
-    if numbers.setting.rolling == "equality":
-        _make_rigid(model)
-    return model
-
-
-def write_numbers(model: mujoco.MjModel, data: mujoco.MjData, numbers: ModelNumbers, views: Views) -> None:
-    """Write the numbers of a scene into a model of its structure, and reset the data.
-
-    `views` are the model's `compiled_views`.
-
-    Raises:
-      UnsupportedError: if MuJoCo cannot represent such a model.
-    """
-    write_compiled(model, numbers.parameters, views)
-    data.warning.number[:] = 0  # It may be that of the scene before.
-    with quiet():
-        mujoco.mj_setConst(model, data)
-    if numbers.setting.rolling != "reduced":
-        model.stat.meaninertia = model.dof_M0.mean()  # It scales the solver's tolerance.
-    if numbers.setting.rolling == "equality":
-        _make_rigid(model)
-    if any(min(body.mass, body.inertia) < mujoco.mjMINVAL for body in numbers.bodies.values()):
-        raise mjcf_file.refused("mass and inertia of moving bodies must be larger than mjMINVAL")
-    if data.warning.number[_INERTIA_WARNING]:
-        raise mjcf_file.refused("masses and inertias are too unequal for it to compute accelerations")
-    mujoco.mj_resetData(model, data)
-
-
-def _make_rigid(model: mujoco.MjModel) -> None:
-    """Make MuJoCo solve the joint equality of a compiled model exactly, which MJCF cannot express.
-
-    A row's softness is proportional to the inverse inertia that the compiled model stores for its
-    joints, which is used for nothing else here, and so is set to 0. One sweep of PGS then solves
-    the single row, where Newton would add a nearly infinite stiffness to the inertias.
+    A row's softness is proportional to the inverse inertia that the model stores for its joints.
+    Nothing else uses that here, so it is set to 0. One sweep of the solver PGS then solves the
+    single row exactly. The solver Newton would add a nearly infinite stiffness to the inertias.
     """
     model.dof_invweight0[:] = 0
     model.opt.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_DIAGEXACT)

@@ -9,7 +9,8 @@ import numpy as np
 from mjbeer import require
 from mjbeer.exceptions import ParameterError, TemplateError, UnsupportedError
 from mjbeer.model import mjcf_file
-from mjbeer.model.build import START, add_start, can_spec, check_both
+from mjbeer.model.build import START, add_start, can_spec
+from mjbeer.model.check import check_drawn, check_file
 from mjbeer.model.mujoco_library import library
 from mjbeer.model.setting import (
     FRICTION,
@@ -24,8 +25,8 @@ from mjbeer.theory.scene import Scene
 from mjbeer.theory.standing import Standing
 
 PORTABLE: tuple[MujocoIntegrator, ...] = ("Euler", "implicitfast", "RK4")
-"""The integrators that everything has which loads a portable export: MJX and mujoco_warp have no
-"implicit", and MuJoCo 3.3 has no "discrete"."""
+"""The integrators of a portable export. MJX and mujoco_warp have no "implicit", and MuJoCo 3.3 has
+no "discrete"."""
 
 
 def export(
@@ -48,12 +49,12 @@ def export(
     one coordinate is phi.
 
     With `portable`, MuJoCo from 3.3.4 on, MJX, mujoco_warp and dm_control load the file. The
-    integrator must then be one of `PORTABLE`, the scene must have no drag and no damping but in
-    proportion to a rate, and a contact is softer: docs/portability.md has the errors.
+    integrator must then be one of `PORTABLE`. The scene must have no drag, and its damping must be
+    in proportion to a rate. A contact is softer: docs/portability.md has the errors.
 
-    A `standing` can is written with the floor that it stands on, or without `free` as one that is
-    held. It has no other parameters than `integrator`, `timestep`, `mjcf` and `portable`, with
-    which it lacks the damping of breaking waves.
+    A `standing` can is written with the floor that it stands on, or, with `free=False`, without it
+    and held in place. Of the other parameters it has `integrator`, `timestep`, `mjcf` and
+    `portable`, with which it lacks the damping of breaking waves.
 
     Raises:
       ParameterError: if a parameter is invalid.
@@ -65,7 +66,9 @@ def export(
     target = require.path(path)
     phi0, phi_dot0 = require.start(phi0, phi_dot0)
     if target.suffix != ".xml":  # MuJoCo takes a .urdf for URDF, and its MjSpec reads no .mjcf
-        raise ParameterError(f"the name of the MJCF file must end in .xml, got {require.format_value(target.name)}")
+        raise ParameterError(
+            f"the name of the MJCF file must end in .xml, got {require.format_value(target.name)}"
+        )
     portable = require.choice("portable", portable, (True, False))
     require.choice("integrator", integrator, PORTABLE if portable else MUJOCO_INTEGRATORS)
     setting = Setting(rolling, integrator, timestep, friction=friction, mjcf=mjcf)
@@ -77,12 +80,17 @@ def export(
             _remove_breaking_waves(spec)
     else:
         add_start(spec, scene, phi0, phi_dot0)
-        fault = check_both(scene, setting, mjcf_file.compile_spec(spec))
+        fault = check_file(setting.folder, scene.attachment, setting.rolling)
+        if fault is None:
+            fault = check_drawn(mjcf_file.compile_spec(spec), scene, setting)
         if fault is not None:
             raise TemplateError(fault)
         if portable:
             _soften(spec, scene)
-        spec.comment = f" Written by mjbeer: rolling={rolling!r}, {scene!r}. The start is the keyframe {START!r}. "
+        spec.comment = (
+            f" Written by mjbeer: rolling={rolling!r}, {scene!r}. "
+            f"The start is the keyframe {START!r}. "
+        )
     # MuJoCo 3.3 refuses a body without mass that has a drawn geom.
     spec.compiler.fusestatic = portable
     if portable:  # MJX 3.3 has no energy, and not all flags
@@ -112,13 +120,16 @@ def _remove_breaking_waves(spec: mujoco.MjSpec) -> None:
 def _soften(spec: mujoco.MjSpec, scene: Scene) -> None:
     """Make the rolling constraint of a portable export as hard as can be without `diagexact`.
 
-    Without it an equality's row is softened by 1/m + 1/I, of slide and hinge, in metres and radians
-    alike. A row about angles, roll - u/a, should have 1/(m a^2) + 1/I, and one about distances, u -
-    a roll, 1/m + a^2/I. The one is taken that is not too soft.
+    Without `diagexact` MuJoCo softens the row of an equality by 1/m + 1/I, for the mass m of the
+    slide and the inertia I of the hinge. That is right for neither of the two ways to write the
+    row: in angles, roll - u/a, it should be 1/(m a^2) + 1/I, and in distances, u - a roll, it
+    should be 1/m + a^2/I. So the row is in angles if the radius is at most 1 m, and in distances if
+    it is larger: in both cases it is then harder than it should be, not softer.
     """
     if scene.drag > 0 or any(scene.damping_law.coefficients[1:]):
         raise UnsupportedError(
-            "a portable export has no drag, and damping in proportion to the slip rate only: MuJoCo 3.3 knows no other"
+            "a portable export has no drag, and damping in proportion to the slip rate only: "
+            "MuJoCo 3.3 knows no other"
         )
     spec.option.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_DIAGEXACT)
     for pair in spec.pairs:

@@ -19,7 +19,9 @@ whether it touches; a can that does not touch falls freely for a step, 5 um at 1
 times this depth."""
 
 
-def reset(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, phi0: float, phi_dot0: float = 0.0) -> None:
+def reset(
+    model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, phi0: float, phi_dot0: float = 0.0
+) -> None:
     """Put the model of a scene at a start, at `phi0` [rad] with `phi_dot0` [rad/s], at time 0.
 
     Your own loop begins with it. Everything else in the `data` is reset, and accelerations and
@@ -36,7 +38,9 @@ def reset(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, phi0: float,
     start = _start_values(scene, phi0, phi_dot0)
     joints = {model.joint(joint).name for joint in range(model.njnt)}
     if not joints & {"phi", "roll"}:
-        raise ParameterError(f"the model must have the joints of a scene, got {require.format_value(sorted(joints))}")
+        raise ParameterError(
+            f"the model must have the joints of a scene, got {require.format_value(sorted(joints))}"
+        )
     mujoco.mj_resetData(model, data)
     for name in joints & start.keys():
         position, rate = start[name]
@@ -74,22 +78,21 @@ def to_states(model: mujoco.MjModel, motion: Coordinates) -> np.ndarray:
     return states
 
 
-def to_coordinates(model: mujoco.MjModel, scene: Scene, states: np.ndarray, times: np.ndarray) -> Coordinates:
+def to_coordinates(
+    model: mujoco.MjModel, scene: Scene, states: np.ndarray, times: np.ndarray
+) -> Coordinates:
     """Return the coordinates of states, shape (samples, nq + nv), at `times` [s], shape
     (samples,)."""
-    joints = joint_addresses(model)
     radius = scene.can.radius
-
-    def joint_values(name: str) -> np.ndarray:
-        """Return positions and rates of a joint, shape (2, samples); zeros if there is none."""
-        if name not in joints:
-            return np.zeros((2, len(states)))
-        return states.T[joints[name] :: model.nq].copy()
-
-    phi = joint_values("phi") if "phi" in joints else joint_values("roll") + joint_values("swing")
-    u = joint_values("slide") if "slide" in joints else radius * phi
-    roll = joint_values("roll") if "roll" in joints else u / radius
-    lift = joint_values("lift")
+    # Positions, then rates, shape (2, joints, samples); of each joint, shape (2, samples).
+    values = states.T.copy().reshape(2, model.nq, len(states))
+    joints = {name: values[:, place] for name, place in joint_addresses(model).items()}
+    nothing = np.zeros((2, len(states)))
+    swing = joints.get("swing", nothing)
+    phi = joints["phi"] if "phi" in joints else joints["roll"] + swing
+    u = joints["slide"] if "slide" in joints else radius * phi
+    roll = joints["roll"] if "roll" in joints else u / radius
+    lift = joints.get("lift", nothing)
     return Coordinates(
         time=times,
         u=u[0],
@@ -119,7 +122,9 @@ def rolling_coordinates(radius: float, u: Any, u_dot: Any, phi: Any, phi_dot: An
     )
 
 
-def _start_values(scene: Scene, phi0: float, phi_dot0: float) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+def _start_values(
+    scene: Scene, phi0: float, phi_dot0: float
+) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     """Return position and rate at a start of all joints that a model may have, by name."""
     u, u_dot = scene.initial_axis(phi0, phi_dot0)
     return _joint_values(rolling_coordinates(scene.can.radius, u, u_dot, phi0, phi_dot0))
@@ -152,10 +157,12 @@ def angle_sums(model: mujoco.MjModel, scene: Scene) -> np.ndarray:
 def state_sizes(model: mujoco.MjModel, scene: Scene) -> np.ndarray:
     """Return the typical size of each component of a state, shape (nq + nv,).
 
-    The error of a component is relative to it, or absolute where the component is smaller. Lengths have the radius,
-    angles 1 rad, and their rates these times sqrt(g/a).
+    The error of a component is relative to it, or absolute where the component is smaller. Lengths
+    have the radius, angles 1 rad, and their rates these times sqrt(g/a).
     """
     radius = scene.can.radius
     rate = math.sqrt(scene.gravity / radius) if scene.gravity > 0 else 1.0
-    sizes = np.array([radius if name in ("slide", "lift") else 1.0 for name in joint_addresses(model)])
+    sizes = np.array(
+        [radius if name in ("slide", "lift") else 1.0 for name in joint_addresses(model)]
+    )
     return np.append(sizes, rate * sizes)

@@ -137,7 +137,9 @@ def _require_elements(spec: mujoco.MjSpec, can: Scene | Standing, folder: pathli
         find = getattr(spec, kind)
         for needed in names:
             if find(needed) is None:
-                raise TemplateError(f"{folder} has no {kind} named {needed!r}, which mjbeer uses; restore it")
+                raise TemplateError(
+                    f"{folder} has no {kind} named {needed!r}, which mjbeer uses; restore it"
+                )
 
 
 def _fit_to_scene(spec: mujoco.MjSpec, scene: Scene) -> None:
@@ -166,9 +168,9 @@ def _fit_to_standing(spec: mujoco.MjSpec, standing: Standing) -> None:
 def beer_column(standing: Standing) -> dict[str, Cylinder]:
     """Return the cylinders that draw the beer of a standing can, by the names of their geoms.
 
-    The upper one tilts about the pivot of the first mode. It remains in the can if it is in a ball
-    around the pivot that is in the can, so its upper face is narrower than the can. Where it has no
-    room, as in a nearly full can, it is too small to be seen.
+    The upper one tilts about the pivot of the first mode. A ball around the pivot that lies in the
+    can holds it at every tilt, so it is narrower than the can. If the ball is smaller than the
+    distance of its lower face, as in a nearly full can, it is made too small to be seen.
     """
     height = standing.height
     radius = standing.can.radius

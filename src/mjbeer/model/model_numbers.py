@@ -5,8 +5,8 @@ Models of one `structure` have the same elements and differ in numbers only.
 them.
 """
 
+import functools
 import math
-import os.path
 import pathlib
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -16,13 +16,13 @@ from typing import NamedTuple
 from mjbeer.exceptions import UnsupportedError
 from mjbeer.model import mjcf_file
 from mjbeer.model.mjcf_file import Parameters
-from mjbeer.model.setting import MJBEER_INTEGRATORS, Rolling, Setting
+from mjbeer.model.setting import MJBEER_FOLDER, MJBEER_INTEGRATORS, Rolling, Setting
 from mjbeer.theory.scene import Attachment, Scene
 
-_TOLERANCE = 1e-14
-"""The solver's tolerance divided by the square of gravity: it ends once an iteration gains less.
-MuJoCo's own 1e-8 m^2/s^4 treats the weight of a light load as zero. 1e-14 takes no more time in the
-four scenes, 1e-18 a third more."""
+_SOLVER_TOLERANCE = 1e-14
+"""The tolerance of MuJoCo's solver divided by the square of gravity, unless the load is light. With
+MuJoCo's own 1e-8 m^2/s^4 the solver treats the weight of a light load as zero. 1e-14 takes no more
+time in the four scenes, 1e-18 a third more."""
 
 
 class Inertial(NamedTuple):
@@ -52,9 +52,9 @@ class ModelNumbers:
     scene: Scene
     setting: Setting
     visuals: bool = False
-    """Whether the incline is tilted, as it is drawn, or gravity instead."""
+    """Whether the incline is tilted, as it is drawn. If not, gravity is tilted instead."""
     timestep: float | None = None
-    """Timestep of MuJoCo, to which constraints are fitted [s], if it is not the setting's."""
+    """Timestep of MuJoCo, to which constraints are fitted [s]. None for that of the setting."""
 
     @cached_property
     def bodies(self) -> Mapping[str, Inertial]:
@@ -70,13 +70,8 @@ class ModelNumbers:
     @property
     def path(self) -> pathlib.Path:
         """Return the path of the mechanics file."""
-        return pathlib.Path(self._path)
-
-    @property
-    def _path(self) -> str:
-        """Return the path as a string: a pathlib.Path takes longer to make than the file to read."""
         name = f"{self.scene.attachment}_{self.setting.rolling}.xml"
-        return os.path.join(self.setting.folder, "mechanics", name)
+        return self.setting.folder / "mechanics" / name
 
     @property
     def acting(self) -> tuple[str, ...]:
@@ -99,8 +94,12 @@ class ModelNumbers:
         Raises:
           TemplateError: if the mechanics file is missing or not readable.
         """
+        if self.setting.folder == MJBEER_FOLDER:
+            content = _own_content(self.scene.attachment, self.setting.rolling)
+        else:
+            content = mjcf_file.content(self.path)
         return Structure(
-            content=mjcf_file.content(self._path),
+            content=content,
             rolling=self.setting.rolling,
             attachment=self.scene.attachment,
             acting=self.acting,
@@ -133,7 +132,7 @@ class ModelNumbers:
         return self.timestep or self.setting.timestep
 
     def _options(self) -> Parameters:
-        """Return the options of MuJoCo, and how incline and can stand."""
+        """Return the options of MuJoCo, the slope of the incline and the height of the can."""
         incline = self.scene.incline
         gravity = self.scene.gravity
         if self.visuals:
@@ -155,10 +154,10 @@ class ModelNumbers:
         integrator = self.setting.integrator
         if integrator in MJBEER_INTEGRATORS:
             return "RK4"  # It is not used, as they step by themselves.
-        if integrator == "discrete" and self.setting.rolling == "reduced" and self.scene.damping_law:
-            # It takes the same steps, but solves for them by an iteration which treats forces below
-            # 3e-8 [N, N m] as zero: a load let go 1e-6 rad beside the top would stay there for
-            # ever.
+        damped = self.setting.rolling == "reduced" and bool(self.scene.damping_law)
+        if integrator == "discrete" and damped:
+            # "discrete" takes the same steps, but finds them by an iteration that treats forces
+            # below 3e-8 [N, N m] as zero: a load let go 1e-6 rad beside the top would stay there.
             return "implicitfast"
         return integrator
 
@@ -201,7 +200,8 @@ class ModelNumbers:
         radius = self.scene.can.radius
         contact = self.setting.rolling == "contact"
         parameters: Parameters = {("fixed slip/roll", "coef"): (-radius,)}
-        time_constant = stiffest(self.setting.integrator, self._timestep, contact)
+        integrator = self.setting.integrator
+        time_constant = shortest_time_constant(integrator, self._timestep, contact)
         if not contact:
             parameters["joint rolling", "solref"] = (time_constant, 1)
             parameters["joint rolling", "polycoef"] = (0, 1 / radius, 0, 0, 0)
@@ -216,25 +216,34 @@ class ModelNumbers:
     def _solver_tolerance(self) -> float:
         """Return the tolerance of the solver of a contact [m^2/s^4].
 
-        It is less for a light load, by what its weight gains over what that of all masses gains: a
-        force squared divided by an inertia. At a tolerance of 0 the solver would spend all its
-        iterations on rounding.
+        The solver minimizes a cost, and ends once an iteration lowers it by less than the
+        tolerance. A force F on an inertia M adds F^2/M to the cost. The weight of all masses adds
+        m g^2, and the torque of the load's weight (m b g)^2/J, which is far less if the load is
+        light. The tolerance is lowered by the ratio of the two, so that the load counts. With a
+        tolerance of 0 the solver would spend all its iterations on rounding.
         """
         scene = self.scene
         inertia = float(scene.oscillator.inertia(math.pi / 2))
-        light = scene.load.moment**2 / (scene.mass * inertia)
-        return _TOLERANCE * max(light, 1e-10) * max(scene.gravity, 1e-5) ** 2
+        ratio = scene.load.moment**2 / (scene.mass * inertia)
+        return _SOLVER_TOLERANCE * max(ratio, 1e-10) * max(scene.gravity, 1e-5) ** 2
 
 
-def stiffest(integrator: str, timestep: float, contact: bool = False) -> float:
-    """Return the time constant [s] of the stiffest constraint to use with an integrator.
+@functools.cache
+def _own_content(attachment: Attachment, rolling: Rolling) -> tuple[bytes, ...]:
+    """Return the content of a mechanics file of mjbeer's own, which is read once a process.
 
-    The constraint is critically damped.
+    A file of a user's own is read at every call, because it may be edited between two of them.
+    """
+    return mjcf_file.content(MJBEER_FOLDER / "mechanics" / f"{attachment}_{rolling}.xml")
 
-    Semi-implicit Euler, and what is like it, is stable for timesteps up to 0.83 time constants (4 -
-    4x - x^2 > 0 for x = h/tau), and is given 0.5. RK4 is stable up to 2.7 and is given 2, which is
-    stable with DOP853 too; "discrete" has no limit. A `contact` opens and closes: with less than a
-    timestep RK4 chatters.
+
+def shortest_time_constant(integrator: str, timestep: float, contact: bool = False) -> float:
+    """Return the time constant [s] of the hardest constraint that an integrator steps stably.
+
+    The constraint is critically damped. With x, the timestep divided by the time constant, the
+    semi-implicit integrators are stable up to x = 0.83, where 4 - 4x - x^2 = 0, and are given 0.5.
+    RK4 is stable up to 2.7 and is given 2, which is stable with DOP853 too. "discrete" has no
+    limit, and is given 2. A `contact` opens and closes, and beyond 1 RK4 chatters.
     """
     if integrator not in ("RK4", "discrete", "DOP853"):
         return 2 * timestep
@@ -242,21 +251,21 @@ def stiffest(integrator: str, timestep: float, contact: bool = False) -> float:
 
 
 def _frozen(scene: Scene) -> Inertial:
-    """Return can and load as one body on a hinge, phi, with the inertia of rolling.
+    """Return can and load as one body on a hinge, whose inertia about the hinge is J(0).
 
-    It is base + chord sin^2(phi/2); frozen_reduced.xml says how. The arms of the chord are 1 m
-    long; any length gives the same inertia.
+    The chord tendon adds the rest of J(phi); frozen_reduced.xml says how.
     """
     base = scene.oscillator.base
     moment = scene.load.moment
-    # Any mass with the moment m b is right: the scene's at its centre of mass (38), or, where that
-    # has more than half of the inertia, a larger mass on a shorter arm that has half.
+    # The motion depends on the mass only through its moment m b, and on the inertia about the
+    # hinge. So the mass is that of the scene, in its centre of mass (38), unless that has more than
+    # half of J(0) about the hinge. Then it is a larger mass on a shorter arm, which has just half.
     mass = max(scene.mass, 2 * moment**2 / base)
     return Inertial(mass, moment / mass, base - moment**2 / mass)
 
 
 def _constrained(scene: Scene) -> dict[str, Inertial]:
-    """Return can and load as they are, which a constraint makes roll."""
+    """Return can and load as they are: a constraint makes them roll."""
     can = scene.can
     load = scene.load
     if scene.attachment == "frozen":
@@ -264,18 +273,20 @@ def _constrained(scene: Scene) -> dict[str, Inertial]:
         inertia = load.inertia + can.inertia + reduced_mass * load.offset**2
         if inertia == 0:
             raise UnsupportedError(
-                "a point load frozen to a massless can has no inertia about its centre of mass, which MuJoCo needs; "
-                'use rolling="reduced", or give the can mass'
+                "a point load frozen to a massless can has no inertia about its centre of mass, "
+                'which MuJoCo needs; use rolling="reduced", or give the can mass'
             )
         return {"can": Inertial(scene.mass, load.moment / scene.mass, inertia)}
     if can.inertia == 0:
+        lacking = "massless can" if can.mass == 0 else "can without inertia"
         raise UnsupportedError(
-            f"a {'massless can' if can.mass == 0 else 'can without inertia'} with a sliding load exists only in "
-            'rolling="reduced": MuJoCo moves no body without mass and inertia; give the can some, as '
-            "can=Can.sheet_metal() or, on the command line, --can metal"
+            f'a {lacking} with a sliding load exists only in rolling="reduced": MuJoCo moves no '
+            "body without mass and inertia; give the can some, as can=Can.sheet_metal() or, on the "
+            "command line, --can metal"
         )
-    # MuJoCo moves no point load. A mass on the axis moves with it exactly as with the can, and
-    # gives it an inertia.
+    # MuJoCo moves no body without inertia, as a point load is. A mass on the axis has the same
+    # motion in the load as in the can. So some of the can's is put into the load, which then has an
+    # inertia.
     is_point = load.inertia < 1e-6 * load.mass * load.offset**2
     moved = min(can.mass / 2, load.mass) if is_point else 0.0
     return {
@@ -285,7 +296,7 @@ def _constrained(scene: Scene) -> dict[str, Inertial]:
 
 
 def _load_with(scene: Scene, moved: float) -> Inertial:
-    """Return the load with the mass `moved` [kg] from the can to it, as a point on the axis."""
+    """Return the load with a mass `moved` [kg] on the axis, which is taken from the can."""
     load = scene.load
     mass = load.mass + moved
     inertia = load.inertia + load.moment * load.offset * moved / mass

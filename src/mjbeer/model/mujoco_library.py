@@ -11,9 +11,8 @@ from typing import NamedTuple
 
 import mujoco
 
-LARGEST = 1e10
-"""Largest state that MuJoCo does not call diverged (mjMAXVAL)."""
-_lock = threading.Lock()
+MAX_STATE = 1e10
+"""MuJoCo calls a motion diverged if a position or a rate is larger (mjMAXVAL)."""
 
 
 class _Output(NamedTuple):
@@ -25,8 +24,16 @@ class _Output(NamedTuple):
 
 
 _SILENT = _Output(console=False, file=False, clock=None)
-_saved: list[_Output] = []
-"""What there was when the first `quiet` was entered, once for each that is still open."""
+
+
+class _Quiet:
+    """The blocks of `quiet` that are open in all threads."""
+
+    lock = threading.Lock()
+    blocks = 0
+    """How many there are."""
+    before = _SILENT
+    """What is restored when the last one ends."""
 
 
 @contextmanager
@@ -34,19 +41,21 @@ def quiet() -> Generator[None]:
     """Stop MuJoCo from printing warnings, from writing its log, and from reading the clock.
 
     The log is MUJOCO_LOG.TXT, and the clock is for `mjData.timer`. Errors are raised as usual. To
-    read the clock takes longer than a step of a model with one or two joints. The settings belong
-    to the process: runs in several threads share them until the last one ends. To change them takes
-    as long as ten such steps: enter this once a run.
+    read the clock takes longer than a step of a model with one or two joints. To change these
+    settings takes as long as ten such steps, so enter this once a run. They belong to the process:
+    the first block that is entered, in any thread, changes them, and the last one restores them.
     """
-    with _lock:
-        _saved.append(_saved[0] if _saved else _exchange(_SILENT))
+    with _Quiet.lock:
+        if _Quiet.blocks == 0:
+            _Quiet.before = _exchange(_SILENT)
+        _Quiet.blocks += 1
     try:
         yield
     finally:
-        with _lock:
-            before = _saved.pop()
-            if not _saved:
-                _exchange(before)
+        with _Quiet.lock:
+            _Quiet.blocks -= 1
+            if _Quiet.blocks == 0:
+                _exchange(_Quiet.before)
 
 
 def _exchange(output: _Output) -> _Output:
@@ -71,7 +80,8 @@ def _clock() -> ctypes.c_void_p:
 def library() -> ctypes.CDLL:
     """Return the handle of the loaded library: to open its file again gives the same one."""
     folder = pathlib.Path(mujoco.__file__).parent
-    pattern = {"darwin": "libmujoco*.dylib", "win32": "mujoco.dll"}.get(sys.platform, "libmujoco.so*")
+    names = {"darwin": "libmujoco*.dylib", "win32": "mujoco.dll"}
+    pattern = names.get(sys.platform, "libmujoco.so*")
     return ctypes.CDLL(str(next(folder.glob(pattern))))
 
 

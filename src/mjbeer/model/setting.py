@@ -38,19 +38,18 @@ class Setting:
     """"reduced" (no constraint), "equality" (a joint equality) or "contact" (a cylinder on a
     plane)."""
     integrator: Integrator = "RK4"
-    """One of MuJoCo's or mjbeer's; "GaussJackson" only with "reduced". With a tolerance it is not
-    used."""
+    """One of MuJoCo's or mjbeer's; "GaussJackson" only with "reduced". With a tolerance this is not
+    used, because `simulate` then chooses the integrator."""
     timestep: float = 1e-3
-    """Timestep [s]; with a tolerance it is the sampling interval."""
+    """Timestep [s]. With a tolerance it is only the interval between samples."""
     tolerance: float | None = None
-    """Largest error of phi and u/a [rad], relative beyond 1 rad; None for a fixed timestep."""
+    """Largest error of phi and u/a [rad], relative beyond 1 rad. None for a fixed timestep."""
     friction: float = FRICTION
     """Friction coefficient of a contact."""
     mjcf: str | os.PathLike[str] | None = None
-    """A folder of MJCF that is read instead of mjbeer's; None for that of the environment's
-    MJBEER_MJCF, if any."""
+    """A folder of MJCF that is read instead of mjbeer's, if one is given."""
     folder: pathlib.Path = field(init=False, repr=False)
-    """The folder of MJCF that is read."""
+    """The folder of MJCF that is read: `mjcf`, that of the environment, or mjbeer's own."""
 
     def __post_init__(self) -> None:
         require.choice("rolling", self.rolling, ROLLINGS)
@@ -67,22 +66,29 @@ class Setting:
         )
         if self.integrator == "GaussJackson" and self.rolling != "reduced":
             raise ParameterError(
-                f"GaussJackson takes no constraint: rolling must be 'reduced' with it, got {self.rolling!r}; "
-                "DOP853 takes any"
+                "GaussJackson takes no constraint: rolling must be 'reduced' with it, "
+                f"got {self.rolling!r}; DOP853 takes any"
             )
         if self.tolerance is not None and self.rolling == "contact":
             raise ParameterError(
-                "a contact is soft, which no tolerance covers: rolling must be 'reduced' or 'equality' with one, "
-                f"got 'contact' and {self.tolerance!r} rad; take a short timestep, and see error_estimate"
+                "a contact is soft, which no tolerance covers: "
+                "rolling must be 'reduced' or 'equality' with one, "
+                f"got 'contact' and {self.tolerance!r} rad; "
+                "take a short timestep, and see error_estimate"
             )
 
     @classmethod
     def of(cls, integrator: Integrator | None, tolerance: float | None, **fields: Any) -> "Setting":
-        """Return the setting of a call that gives an integrator, or a tolerance, or neither."""
-        stepped_by = cls.integrator if integrator is None else integrator
-        setting = cls(integrator=stepped_by, tolerance=tolerance, **fields)
-        if tolerance is not None and integrator is not None:
-            raise ParameterError(f"a tolerance chooses the integrator itself: give one of both, got {integrator!r} too")
+        """Return the setting of a call in which one of `integrator` and `tolerance` is None, or
+        both are."""
+        if integrator is None:
+            return cls(tolerance=tolerance, **fields)
+        setting = cls(integrator=integrator, tolerance=tolerance, **fields)
+        if tolerance is not None:
+            raise ParameterError(
+                "a tolerance chooses the integrator itself: give one of both, "
+                f"got {integrator!r} too"
+            )
         return setting
 
 
@@ -95,10 +101,11 @@ def mjcf_folder(given: str | os.PathLike[str] | None = None) -> pathlib.Path:
     """Return the folder of MJCF: the one that is `given`, or the environment's, or mjbeer's own."""
     folder = os.environ.get("MJBEER_MJCF") if given is None else given
     if folder is None:
-        return _MJBEER_FOLDER
+        return MJBEER_FOLDER
     if not isinstance(folder, (str, os.PathLike)) or not os.path.isdir(folder):
-        raise ParameterError(f"mjcf must be a folder of mechanics and looks, got {require.format_value(folder)}")
-    # It is read later, when the working folder may be another one.
+        value = require.format_value(folder)
+        raise ParameterError(f"mjcf must be a folder of mechanics and looks, got {value}")
+    # Its files are read later, when the working folder may have changed.
     return pathlib.Path(folder).absolute()
 
 
@@ -109,4 +116,5 @@ def _find_mjbeer_folder() -> pathlib.Path:
     return inside if inside.is_dir() else package.parents[1] / "mjcf"
 
 
-_MJBEER_FOLDER = _find_mjbeer_folder()
+MJBEER_FOLDER = _find_mjbeer_folder()
+"""mjbeer's own folder of MJCF."""

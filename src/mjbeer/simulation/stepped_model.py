@@ -1,4 +1,7 @@
-"""A compiled model with the numbers of a scene, ready to be stepped; each thread keeps its own for the next scene."""
+"""A compiled model with the numbers of a scene, ready to be stepped.
+
+Each thread keeps its own for the next scene.
+"""
 
 import threading
 from functools import cached_property
@@ -7,9 +10,8 @@ from typing import TYPE_CHECKING
 import mujoco
 import numpy as np
 
-from mjbeer.model.build import compiled_model, write_numbers
 from mjbeer.model.check import check_run, is_edited
-from mjbeer.model.compiled_numbers import compiled_views
+from mjbeer.model.compiled import compiled_model, parameter_views, write_numbers
 from mjbeer.model.joints import initial_state
 from mjbeer.model.model_numbers import ModelNumbers, Structure
 from mjbeer.theory.equations import Coordinates
@@ -29,7 +31,7 @@ class SteppedModel:
     def __init__(self, numbers: ModelNumbers) -> None:
         self.model = compiled_model(numbers)
         self.data = mujoco.MjData(self.model)
-        self._views = compiled_views(self.model, numbers.parameters)
+        self._views = parameter_views(self.model, numbers.parameters)
         self._written: ModelNumbers | None = None
         self._edited = is_edited(numbers)
         self.write(numbers)
@@ -63,7 +65,7 @@ class SteppedModel:
         return initial_state(self.model, self.scene, phi0, phi_dot0)
 
     def check(self, motion: Coordinates) -> None:
-        """Compare the MJCF with theory at the states of a run of this scene, unless it is mjbeer's own.
+        """Compare the MJCF with theory at the states of a run, unless it is mjbeer's own.
 
         Raises:
           TemplateError: if it does not move as theory says there.
@@ -83,7 +85,7 @@ _kept = _Kept()
 
 
 def kept_model(numbers: ModelNumbers) -> SteppedModel:
-    """Return this thread's model of that structure, with this scene's numbers written in and its data reset."""
+    """Return this thread's model of that structure, with these numbers and its data reset."""
     kept = _kept.models.get(numbers.structure)
     if kept is None:
         kept = _kept.models[numbers.structure] = SteppedModel(numbers)

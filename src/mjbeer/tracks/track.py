@@ -1,47 +1,38 @@
-"""The track of a filmed can, and the tables of Tracker, Logger Pro, Capstone and phyphox in which people have it."""
+"""The track of a filmed can, and the tables of Tracker, Logger Pro, Capstone and phyphox."""
 
 import csv
+import itertools
 import math
 import os
 import pathlib
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from mjbeer import require
 from mjbeer.exceptions import ParameterError
 
-_LENGTHS, _ANGLES = {"m": 1.0, "cm": 1e-2, "mm": 1e-3}, {"rad": 1.0, "deg": math.pi / 180, "°": math.pi / 180}
-_COLUMNS = {
-    "time": ({"s": 1.0, "ms": 1e-3, "min": 60.0}, "t|time"),
-    "frame": ({}, "frames?|steps?"),
-    "x": (_LENGTHS, "x|along|distance|position|position x|x position|u|s"),
-    "y": (_LENGTHS, "y|position y|y position"),
-    "roll": (_ANGLES, "roll"),
-    "phi": (_ANGLES, "phi|φ"),
-}
-"""What is read: the units that it may have, and its usual headings. `docs/live.html` has the same."""
-_TITLE = re.compile(r"(?:latest *:)?(?:run *#?\d+ *[:|])? *([^\[(]*[^\[( ])? *(?:[\[(] *(.*?) *[\])])?")
-"""How a heading begins: after which run it was, the name and the unit."""
-_POINT = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?", re.IGNORECASE)  # 1234.5
-_COMMA = re.compile(r"[-+]?(\d+,\d*|,\d+)(e[-+]?\d+)?", re.IGNORECASE)  # 1234,5
-_GROUPED = re.compile(
-    r"[-+]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?"
-)  # 1,234.5; of 1,234 nobody knows whether it is 1.234 or 1234
+_FEWEST_POINTS = 12
+"""The fewest points of a track: twice the usual number of unknowns of a fit."""
+_LARGEST_ASIDE = 0.02
+"""How far the points of an axis are off their straight line at most (rms), as a share of its
+length: a mark on the rim is farther off within a metre."""
 
 
 @dataclass(frozen=True, eq=False)
 class Track:
     """Where a filmed can was, and when; all arrays have the shape (points,).
 
-    `time` is by any clock [s]; `along` is the place of the axis along the incline [m] and `roll` the angle of a mark on
-    the can [rad], both from anywhere and growing downhill; `phi` is the load's angle to the incline [rad].
+    `time` is by any clock [s]; `along` is the place of the axis along the incline [m] and `roll`
+    the angle of a mark on the can [rad], both from anywhere and growing downhill; `phi` is the
+    load's angle to the incline [rad].
 
     Raises:
-      ParameterError: if an array is not finite, they differ in length, the times do not increase, there are fewer than
-        12 points, which is twice the usual number of unknowns, or all are in one place.
+      ParameterError: if an array is not finite, they differ in length, the times do not increase,
+        there are fewer than 12 points, or all are in one place.
     """
 
     time: np.ndarray
@@ -50,135 +41,275 @@ class Track:
     phi: np.ndarray | None = None
 
     def __post_init__(self) -> None:
-        for name in ("time", "along", *[each for each in ("roll", "phi") if getattr(self, each) is not None]):
-            require.set_fields(self, **{name: require.samples(name, getattr(self, name))})
-            if (count := len(getattr(self, name))) != len(self.time):
-                raise ParameterError(f"{name} must have as many entries as time, {len(self.time)}, got {count}")
-        if len(self.time) < 12 or (np.diff(self.time) <= 0).any() or not np.ptp(self.along) > 0:
+        for name in ("time", *self.channels):
+            array = require.samples(name, getattr(self, name))
+            require.set_fields(self, **{name: array})
+            if len(array) != len(self.time):
+                count = f"{len(self.time)}, got {len(array)}"
+                raise ParameterError(f"{name} must have as many entries as time, {count}")
+        enough = len(self.time) >= _FEWEST_POINTS
+        later = bool((np.diff(self.time) > 0).all())
+        moved = bool(np.ptp(self.along) > 0)
+        if not (enough and later and moved):
+            allowed = f"{_FEWEST_POINTS} points or more, ever later and not all in one place"
             got = f"{len(self.time)} from {self.time[0]:g} s to {self.time[-1]:g} s"
-            raise ParameterError(f"a track has 12 points or more, ever later and not all in one place, got {got}")
+            raise ParameterError(f"a track has {allowed}, got {got}")
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Return the names of what was tracked: "along", and perhaps "roll" and "phi"."""
+        angles = [name for name in ("roll", "phi") if getattr(self, name) is not None]
+        return ("along", *angles)
+
+
+class _Column(NamedTuple):
+    """What a column may be: its units, as parts of SI's, and a pattern of its usual headings."""
+
+    units: dict[str, float]
+    usual: str
+
+
+class _Used(NamedTuple):
+    """The index of a column that is read, and how much of SI's unit its own unit is."""
+
+    index: int
+    in_si: float
+
+
+class _Cell(NamedTuple):
+    """The text of a cell, and its place as messages name it."""
+
+    text: str
+    place: str
+
+
+_LENGTHS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3}
+_ANGLES = {"rad": 1.0, "deg": math.pi / 180, "°": math.pi / 180}
+_COLUMNS = {
+    "time": _Column({"s": 1.0, "ms": 1e-3, "min": 60.0}, "t|time"),
+    "frame": _Column({}, "frames?|steps?"),
+    "x": _Column(_LENGTHS, "x|along|distance|position|position x|x position|u|s"),
+    "y": _Column(_LENGTHS, "y|position y|y position"),
+    "roll": _Column(_ANGLES, "roll"),
+    "phi": _Column(_ANGLES, "phi|φ"),
+}
+"""What is read. `docs/live.html` has the same."""
+_TITLE = re.compile(
+    r"(?:latest *:)?(?:run *#?\d+ *[:|])? *([^\[(]*[^\[( ])? *(?:[\[(] *(.*?) *[\])])?"
+)
+"""How a heading begins: after which run it was, the name and the unit."""
+_POINT = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?", re.IGNORECASE)
+"""A number with a decimal point, or without any: 1234.5."""
+_COMMA = re.compile(r"[-+]?(\d+,\d*|,\d+)(e[-+]?\d+)?", re.IGNORECASE)
+"""A number with a decimal comma: 1234,5."""
+_GROUPED = re.compile(r"[-+]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?")
+"""A number with commas between thousands: 1,234.5. Nobody knows whether 1,234 is 1.234 or 1234."""
 
 
 def read_track(
-    path: str | os.PathLike[str], columns: Mapping[str, str | int] | None = None, rate: float | None = None
+    path: str | os.PathLike[str],
+    columns: Mapping[str, str | int] | None = None,
+    rate: float | None = None,
 ) -> Track:
-    """Return the track in a table: a text with tabs, semicolons, commas or spaces between its columns.
+    """Return the track in a table: a text with tabs, semicolons, commas or spaces between columns.
 
-    Numbers may have decimal commas, or commas between thousands, if others tell which they are. Lines above the last
-    heading are passed over, rows with an empty cell are left out.
-    Units stand in the headings, in brackets; without them they are s, m and rad. `columns` says which column is "time",
-    "frame", "x", "y", "roll" or "phi", by heading or number from 1, unless its heading is a usual one. `rate` [1/s] is
-    that of numbered frames. With x and y the places are along the line through all of them, counted as the can went.
+    Numbers may have decimal commas, or commas between thousands, if others tell which they are.
+    Lines above the last heading are passed over, rows with an empty cell are left out. Units stand
+    in the headings, in brackets; without them they are s, m and rad. With x and y the places are
+    along the line through all of them, counted as the can went.
+
+    Args:
+      path: the file.
+      columns: which column is "time", "frame", "x", "y", "roll" or "phi", by heading or number from
+        1, unless its heading is a usual one.
+      rate: the rate of numbered frames [1/s].
 
     Raises:
       ParameterError: if it cannot be read so; the message has line and column.
     """
-    source, columns = require.path(path), require.instance("columns", {} if columns is None else columns, dict)
-    cells = _cells(source)
-    first = next((line for line, row in cells.items() if sum(map(_is_number, row)) > 1), 0)
-    if not (above := [line for line in cells if line < first]):
-        raise ParameterError(f"{source} is no table: there must be a heading above two columns of numbers or more")
-    titles = cells[above[-1]]
-    used = _used(f"{source}, line {above[-1]}", titles, columns)
+    source = require.path(path)
+    columns = require.instance("columns", {} if columns is None else columns, dict)
+    rows = _rows(source)
+    heading = _heading_line(source, rows)
+    titles = rows[heading]
+    data = {line: row for line, row in rows.items() if line > heading}
+    used = _used_columns(f"{source}, line {heading}", titles, columns)
     if "frame" in used:
-        used["time"] = used.pop("frame")[0], 1 / require.positive("rate of the frames", rate, "1/s")
-    texts: dict[str, list[str]] = {name: [] for name in used}
-    places: dict[str, list[str]] = {name: [] for name in used}
-    for line, row in cells.items():
-        if line < first:
-            continue
-        if any(row[len(titles) :]):
-            place = f"{source}, line {line}, column {len(titles) + 1}"
-            raise ParameterError(f"{place}: {row[len(titles)]!r} has no heading; are there commas within numbers?")
-        if all(at < len(row) and row[at] for at, _ in used.values()):
-            for name, (at, _) in used.items():
-                texts[name].append(row[at])
-                places[name].append(f"{source}, line {line}, column {at + 1}")
-    comma = _comma([text for column in texts.values() for text in column])
+        interval = 1 / require.positive("rate of the frames", rate, "1/s")
+        used["time"] = _Used(used.pop("frame").index, interval)
+    cells = _cells(source, data, used, len(titles))
+    comma = _meaning_of_commas(itertools.chain(*cells.values()))
     arrays = {}
-    for name, (_, scale) in used.items():
-        values = [_number(*cell, comma) for cell in zip(places[name], texts[name], strict=True)]
-        arrays[name] = scale * np.array(values)
-    for place, step in zip(places["time"][1:], np.diff(arrays["time"]), strict=True):
-        if not step > 0:
-            raise ParameterError(f"{place}: this time is not later than the one before")
-    along = _straight(source, arrays["x"], arrays["y"]) if "y" in arrays else arrays["x"]
+    for name, column in cells.items():
+        numbers = [_number(cell, comma) for cell in column]
+        arrays[name] = used[name].in_si * np.array(numbers)
+    for cell, interval in zip(cells["time"][1:], np.diff(arrays["time"]), strict=True):
+        if interval <= 0:
+            raise ParameterError(f"{cell.place}: this time is not later than the one before")
+    along = arrays["x"]
+    if "y" in arrays:
+        along = _along_line(source, along, arrays["y"])
     return Track(arrays["time"], along, arrays.get("roll"), arrays.get("phi"))
 
 
-def _cells(source: pathlib.Path) -> dict[int, list[str]]:
-    """Return the cells of the lines that are not empty, by their numbers."""
+def _rows(source: pathlib.Path) -> dict[int, list[str]]:
+    """Return the cells of the lines that are not empty, by the numbers of the lines."""
+    lines = {}
+    for number, line in enumerate(_text(source).splitlines(), start=1):
+        if line.strip(" \t;,"):
+            lines[number] = line
+    delimiter = " "
+    for mark in "\t;,":
+        if 2 * sum(mark in line for line in lines.values()) > len(lines):
+            delimiter = mark
+            break
+    rows = {}
+    for number, line in lines.items():
+        spaced = " ".join(line.split()) if delimiter == " " else line
+        # Each line alone: a quotation mark that nobody closed spoils no more than its own.
+        row = next(csv.reader([spaced], delimiter=delimiter, skipinitialspace=True))
+        rows[number] = [cell.strip(' "') for cell in row]
+    return rows
+
+
+def _text(source: pathlib.Path) -> str:
+    """Return the text of a file, in UTF-8 or, as spreadsheets write it, UTF-16 with its mark."""
     try:
         raw = source.read_bytes()
     except OSError as error:
-        raise ParameterError(f"cannot read {require.format_value(str(source))}: {error.strerror or error}") from None
-    text = raw.decode("utf-16" if raw[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig", errors="replace")
-    lines = {number: line for number, line in enumerate(text.splitlines(), start=1) if line.strip(" \t;,")}
-    mark = next((each for each in "\t;," if 2 * sum(each in line for line in lines.values()) > len(lines)), None)
-    if mark is None:
-        lines = {number: " ".join(line.split()) for number, line in lines.items()}
-    # Each line alone: a quotation mark that somebody forgot to close spoils no more than its own.
-    rows = {
-        number: next(csv.reader([line], delimiter=mark or " ", skipinitialspace=True)) for number, line in lines.items()
-    }
-    return {number: [cell.strip(' "') for cell in row] for number, row in rows.items()}
+        name = require.format_value(str(source))
+        raise ParameterError(f"cannot read {name}: {error.strerror or error}") from None
+    marked = raw[:2] in (b"\xff\xfe", b"\xfe\xff")
+    return raw.decode("utf-16" if marked else "utf-8-sig", errors="replace")
 
 
-def _is_number(text: str) -> bool:
-    """Return whether a cell may be a number, of whatever commas."""
-    return any(form.fullmatch(text) for form in (_POINT, _COMMA, _GROUPED))
+def _heading_line(source: pathlib.Path, rows: dict[int, list[str]]) -> int:
+    """Return the number of the line above the first row with two numbers."""
+    for above, line in itertools.pairwise(rows):
+        if sum(_is_number(cell) for cell in rows[above]) > 1:
+            break
+        if sum(_is_number(cell) for cell in rows[line]) > 1:
+            return above
+    needed = "there must be a heading above two columns of numbers or more"
+    raise ParameterError(f"{source} is no table: {needed}")
 
 
-def _comma(texts: list[str]) -> str | None:
-    """Return what a comma is in these numbers: "decimal" or "thousands"; None if no number tells."""
-    if any(_COMMA.fullmatch(text) and not _GROUPED.fullmatch(text) for text in texts):
-        return "decimal"
-    return "thousands" if any("." in text or text.count(",") > 1 for text in texts) else None
-
-
-def _number(place: str, text: str, comma: str | None) -> float:
-    """Return the number in a cell at a place of the file; `comma` is what a comma is there."""
-    if comma is None and _GROUPED.fullmatch(text):
-        either = f"{text!r} may be {text.replace(',', '.')} or {text.replace(',', '')}"
-        raise ParameterError(f"{place}: {either}, and no number of this table tells which; write it with a point")
-    if comma == "decimal" and _is_number(text) and "." not in text and text.count(",") < 2:
-        return float(text.replace(",", "."))
-    if comma != "decimal" and (_POINT.fullmatch(text) or _GROUPED.fullmatch(text)):
-        return float(text.replace(",", ""))
-    among = ", as others here have decimal commas" if comma == "decimal" and _is_number(text) else ""
-    raise ParameterError(f"{place}: {text!r} is no number{among}")
-
-
-def _used(place: str, titles: list[str], columns: Mapping[str, str | int]) -> dict[str, tuple[int, float]]:
-    """Return which column has what, and its unit; `titles` are the headings at a place of the file."""
+def _used_columns(
+    place: str, titles: list[str], columns: Mapping[str, str | int]
+) -> dict[str, _Used]:
+    """Return which column has what, and its unit; `titles` are the headings at a place."""
     if not set(columns) <= set(_COLUMNS):
-        raise ParameterError(f"columns are those of {', '.join(_COLUMNS)}, got {require.format_value(columns)}")
-    parts, used = [_TITLE.findall(title.lower())[0] for title in titles], {}
-    for name, (units, usual) in _COLUMNS.items():
-        if asked := str(columns.get(name, "")):
-            meant = [at for at, title in enumerate(titles) if asked in (title, str(at + 1))]
-        else:
-            meant = [at for at, (part, _) in enumerate(parts) if re.fullmatch(usual, part)]
-        if len(meant) > 1 or (asked and not meant):
-            found = f"{len(meant) or 'no'} columns may be {name}"
-            raise ParameterError(f"{place}: {found}; say which by its number from 1, of {titles}")
-        if meant and not (name == "frame" and "time" in used):
-            _, unit = parts[meant[0]]
-            if unit and unit not in units:
-                allowed = f"the unit of {name} is one of {', '.join(units)}, got {titles[meant[0]]!r}"
-                raise ParameterError(f"{place}, column {meant[0] + 1}: {allowed}")
-            used[name] = meant[0], units.get(unit, 1.0)
+        got = require.format_value(columns)
+        raise ParameterError(f"columns are those of {', '.join(_COLUMNS)}, got {got}")
+    used = {}
+    for name in _COLUMNS:
+        index = _column_index(place, titles, name, str(columns.get(name, "")))
+        if index is None or (name == "frame" and "time" in used):
+            continue
+        used[name] = _Used(index, _unit_in_si(place, titles, name, index))
     if "x" not in used or not used.keys() & {"time", "frame"}:
-        raise ParameterError(f"{place}: time and x are needed; say which columns they are, of {titles}")
+        needed = f"time and x are needed; say which columns they are, of {titles}"
+        raise ParameterError(f"{place}: {needed}")
     return used
 
 
-def _straight(source: pathlib.Path, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Return the places along the straight line through points, from their middle, counted as they went."""
-    places = np.stack([x - x.mean(), y - y.mean()], axis=1)
-    _, sizes, ways = np.linalg.svd(places, full_matrices=False)
-    along = places @ ways[0]
-    if (aside := sizes[1] / math.sqrt(len(x))) > 0.02 * np.ptp(along):  # a mark on the rim is farther, within a metre
+def _column_index(place: str, titles: list[str], name: str, asked: str) -> int | None:
+    """Return the column that was asked for, or else that with a usual heading; None without one."""
+    usual = _COLUMNS[name].usual
+    meant = [
+        index for index, title in enumerate(titles) if _is_meant(title, index + 1, asked, usual)
+    ]
+    if len(meant) > 1 or (asked and not meant):
+        found = f"{len(meant) or 'no'} columns may be {name}"
+        raise ParameterError(f"{place}: {found}; say which by its number from 1, of {titles}")
+    return meant[0] if meant else None
+
+
+def _is_meant(title: str, number: int, asked: str, usual: str) -> bool:
+    """Return whether a column has the heading or number asked for, or else a usual heading."""
+    if asked:
+        return asked in (title, str(number))
+    heading, _ = _name_and_unit(title)
+    return re.fullmatch(usual, heading) is not None
+
+
+def _unit_in_si(place: str, titles: list[str], name: str, index: int) -> float:
+    """Return how much of SI's unit the unit of a column is, 1 if its heading has none."""
+    title = titles[index]
+    units = _COLUMNS[name].units
+    _, unit = _name_and_unit(title)
+    if unit and unit not in units:
+        allowed = f"the unit of {name} is one of {', '.join(units)}"
+        raise ParameterError(f"{place}, column {index + 1}: {allowed}, got {title!r}")
+    return units.get(unit, 1.0)
+
+
+def _name_and_unit(title: str) -> tuple[str, str]:
+    """Return the name and the unit in a heading, each perhaps empty."""
+    return _TITLE.findall(title.lower())[0]
+
+
+def _cells(
+    source: pathlib.Path, rows: dict[int, list[str]], used: dict[str, _Used], width: int
+) -> dict[str, list[_Cell]]:
+    """Return the cells of each column that is read, of rows of at most `width` cells.
+
+    Rows in which one of them is empty are left out.
+    """
+    cells: dict[str, list[_Cell]] = {name: [] for name in used}
+    for line, row in rows.items():
+        if any(row[width:]):
+            place = f"{source}, line {line}, column {width + 1}"
+            hint = "are there commas within numbers?"
+            raise ParameterError(f"{place}: {row[width]!r} has no heading; {hint}")
+        if all(column.index < len(row) and row[column.index] for column in used.values()):
+            for name, column in used.items():
+                place = f"{source}, line {line}, column {column.index + 1}"
+                cells[name].append(_Cell(row[column.index], place))
+    return cells
+
+
+def _is_number(text: str) -> bool:
+    """Return whether a cell may be a number, whatever its commas mean."""
+    return any(form.fullmatch(text) for form in (_POINT, _COMMA, _GROUPED))
+
+
+def _meaning_of_commas(cells: Iterable[_Cell]) -> str | None:
+    """Return what a comma is in these numbers: "decimal" or "thousands"; None if none tells."""
+    texts = [cell.text for cell in cells]
+    if any(_COMMA.fullmatch(text) and not _GROUPED.fullmatch(text) for text in texts):
+        return "decimal"
+    if any("." in text or text.count(",") > 1 for text in texts):
+        return "thousands"
+    return None
+
+
+def _number(cell: _Cell, comma: str | None) -> float:
+    """Return the number in a cell; `comma` is what a comma means."""
+    text = cell.text
+    if comma is None and _GROUPED.fullmatch(text):
+        either = f"{text!r} may be {text.replace(',', '.')} or {text.replace(',', '')}"
+        unclear = "no number of this table tells which; write it with a point"
+        raise ParameterError(f"{cell.place}: {either}, and {unclear}")
+    decimal = comma == "decimal"
+    if decimal and _is_number(text) and "." not in text and text.count(",") < 2:
+        return float(text.replace(",", "."))
+    if not decimal and (_POINT.fullmatch(text) or _GROUPED.fullmatch(text)):
+        return float(text.replace(",", ""))
+    among = ", as others here have decimal commas" if decimal and _is_number(text) else ""
+    raise ParameterError(f"{cell.place}: {text!r} is no number{among}")
+
+
+def _along_line(source: pathlib.Path, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Return the places along the line through points [m], from its middle, counted as they went.
+
+    It is the line with the least squares of distances from it.
+    """
+    points = np.stack([x - x.mean(), y - y.mean()], axis=1)
+    _, sizes, directions = np.linalg.svd(points, full_matrices=False)
+    along = points @ directions[0]
+    aside = sizes[1] / math.sqrt(len(x))
+    if aside > _LARGEST_ASIDE * np.ptp(along):
         off = f"x and y are {1e3 * aside:.2g} mm off a straight line (rms)"
         raise ParameterError(f"{source}: {off}; track the can's axis, not a mark on its rim")
     return along * math.copysign(1.0, -along[0])

@@ -1,54 +1,45 @@
-"""The tables and the diagram of a benchmark, and the folder that it writes.
-
-The diagram is error over run time: a panel a scene, with mjbeer's own integrators in colour.
-"""
+"""The tables of a benchmark, and the folder that it writes."""
 
 import math
 import pathlib
-from collections.abc import Sequence
-
-from matplotlib.axes import Axes
+from collections.abc import Callable, Sequence
 
 from mjbeer.model.setting import ROLLINGS
 from mjbeer.output import files
-from mjbeer.output.plots import COLOURS, chart, name_below
 from mjbeer.output.terminal import Table
-from mjbeer.studies.benchmark import points
-from mjbeer.studies.benchmark.other_tools import WHOLE
-from mjbeer.studies.benchmark.points import CASES, CHOSEN, TOLERANCE, USUAL, Benchmark, Curve, Point, milliseconds
+from mjbeer.studies.benchmark import points, work_precision
+from mjbeer.studies.benchmark.other_tools import (
+    COMPILED_DOP853,
+    COMPILED_ODEINT,
+    HEYOKA,
+    ODEINT,
+    WHOLE_CALL,
+)
+from mjbeer.studies.benchmark.points import Benchmark, Curve, Point, milliseconds, spread
 
-COMPARED = (1e-3, 1e-6, 1e-9, 1e-11)
-"""The errors [rad] at which run times are compared with that of the best setting."""
-OTHERS = ("MuJoCo RK4", "SciPy DOP853", "SciPy odeint", "heyoka")
+COMPARED = (1e-3, 1e-6)
+"""The errors [rad] at which run times are compared: what a motion is usually needed to."""
+FINEST = 1e-11
+"""A third one, for what it is: near rounding the order of a method decides alone, and RK4 has 4 while
+Gauss-Jackson has 13."""
+RK4 = "MuJoCo RK4"
+OTHERS = (RK4, ODEINT, COMPILED_ODEINT, COMPILED_DOP853, HEYOKA)
 """Compared with mjbeer's best reduced setting."""
+_CONTACT = (
+    Curve("contact", "Euler"),
+    Curve("contact", "RK4"),
+    Curve("contact, defaults", "Euler"),
+    Curve("equality, defaults", "Euler"),
+)
+"""The curves whose convergence with the timestep is shown."""
 _NOTES = """
-The run time is that of one call that returns 65 samples of 2.048 s of motion, in one thread and with warm caches: the
-least of the rounds. What is done once, to build and compile a model or to compile equations, is not in it; whole calls
-and study.json have it. SciPy calls equations in interpreted Python; all else is compiled. Errors are against exact
-theory.
+The run time is the processor's time of one call that returns 65 samples of 2.048 s of motion, in one thread and with
+warm caches: the least of the rounds, and the largest where two times are given. What is done once, to build and
+compile a model or to compile equations, is not in it; whole calls and study.json have it. Errors are against exact
+theory. "Compiled equations" and heyoka integrate equations that were derived by hand, without MuJoCo; odeint is LSODA.
 
 ![Work-precision diagram](work_precision.svg)
 """
-_DARK, _SCIPY, _HEYOKA = "#333333", COLOURS[4], COLOURS[3]
-_LINES: dict[Curve, tuple[str, str, str]] = {
-    Curve("reduced", "DOP853"): ("mjbeer's DOP853", COLOURS[0], "-o"),
-    Curve("reduced", "GaussJackson"): ("mjbeer's Gauss-Jackson (multistep)", COLOURS[1], "-s"),
-    Curve("reduced", CHOSEN, TOLERANCE): ("mjbeer to a tolerance", COLOURS[2], "-D"),
-    Curve("contact", "DOP853"): ("mjbeer's DOP853, in contact", COLOURS[5], ":o"),
-    Curve("reduced", "RK4"): ("MuJoCo's RK4", _DARK, "-^"),
-    Curve("contact", "RK4"): ("MuJoCo's RK4, in contact", _DARK, ":^"),
-    Curve("reduced", "Euler"): ("MuJoCo's Euler", _DARK, "-x"),
-    Curve("equality, defaults", "Euler"): ("equality as usually written", "black", "*"),
-    Curve("contact, defaults", "Euler"): ("contact as usually written", "black", "X"),
-    Curve("SciPy DOP853", "", TOLERANCE): ("SciPy's DOP853, interpreted", _SCIPY, "--v"),
-    Curve("SciPy odeint", "", TOLERANCE): ("SciPy's odeint (LSODA), interpreted", _SCIPY, "--<"),
-    Curve("heyoka", "", TOLERANCE): ("heyoka", _HEYOKA, "-P"),
-}
-"""The curves that are drawn, each with its name, its colour, and its line and marker: those that somebody would choose,
-and single points of models as people usually write them, at 2 ms. SciPy calls interpreted Python, drawn with dashes;
-all other curves are of compiled code. The tables have what the others cost."""
-_FLOOR, _CEILING = 1e-15, 10.0
-"""Smaller errors [rad] are drawn at the floor, since a logarithmic axis has no zero; larger ones are no motion."""
 
 
 def write(study: Benchmark, folder: pathlib.Path) -> None:
@@ -58,7 +49,8 @@ def write(study: Benchmark, folder: pathlib.Path) -> None:
       OutputError: if a file cannot be written.
     """
     files.write(folder / "study.json", study.json())
-    draw(study, folder / "work_precision")
+    if study.cases:
+        work_precision.draw(study, folder / "work_precision")
     machine = study.machine
     versions = ", ".join(f"{name} {number}" for name, number in machine["versions"].items())
     absent = [f"\n{name} is absent: {reason}" for name, reason in study.settings["absent"].items()]
@@ -73,128 +65,199 @@ def write(study: Benchmark, folder: pathlib.Path) -> None:
 
 
 def tables(study: Benchmark) -> list[Table]:
-    """Return the tables of a study, in the order in which they are shown."""
-    return [*(cheapest(study, case) for case in study.cases), others(study), whole_calls(study)]
+    """Return the tables of a study that have rows, in the order in which they are shown."""
+    found = [
+        ratios(study, COMPARED),
+        ratios(study, (FINEST,)),
+        evaluations(study),
+        whole_calls(study),
+        *(drift(study, case) for case in study.long_cases),
+        *(cheapest(study, case) for case in study.cases),
+        *(convergence(study, case) for case in study.cases),
+    ]
+    return [table for table in found if table.rows]
 
 
-def cheapest(study: Benchmark, case: str) -> Table:
-    """Return the fastest setting of a case for each error and way of rolling, with its run time and evaluations."""
-    found = study.of(case)
-    rollings = [rolling for rolling in ROLLINGS if any(point.model == rolling for point in found)]
-    rows = []
-    for level in points.LEVELS:
-        best = [points.cheapest([point for point in found if point.model == each], level) for each in rollings]
-        cells = ["not reached" if each is None else f"{each.setting}: {milliseconds(each.time)}" for each in best]
-        rows.append((f"{level:.0e} rad", *cells))
-    return Table(f"{case}: cheapest setting for an error, and its run time", ("error at most", *rollings), rows)
+def ratios(study: Benchmark, errors: Sequence[float]) -> Table:
+    """Return run times of RK4 and of other tools divided by that of the best reduced setting.
 
-
-def _by(study: Benchmark, case: str, name: str) -> list[Point]:
-    """Return the points of a case on the curve of one of `OTHERS`."""
-    curve = ("reduced", "RK4") if name == "MuJoCo RK4" else (name, "")
-    return [point for point in study.of(case) if (point.model, point.method) == curve]
-
-
-def ratio(study: Benchmark, case: str, name: str, error: float) -> float | None:
-    """Return the run time of one of `OTHERS` over that of mjbeer's best reduced setting, at equal error [rad].
-
-    It is None if one of the two does not reach the error.
+    They are at equal error [rad]. In brackets are the smallest and the largest ratio of single
+    rounds.
     """
-    best = points.time_for((point for point in study.of(case) if point.model == "reduced"), error)
-    found = points.time_for(_by(study, case, name), error) / best
-    return found if 0 < found < math.inf else None
+
+    def cell(best: Sequence[Point], found: Sequence[Point], error: float) -> str:
+        ratio = points.time_ratio(found, best, error)
+        if ratio is None:
+            return "-"
+        rounds = f"{two_digits(ratio.smallest)} to {two_digits(ratio.largest)}"
+        return f"{two_digits(ratio.of_least)} ({rounds})"
+
+    def best_cell(best: Sequence[Point], error: float) -> str:
+        return spread(points.times_in_rounds(best, error))
+
+    title = "Run time divided by that of mjbeer's best reduced setting, at equal error (below 1 is faster)"
+    return _comparison(study, errors, title, best_cell, cell)
 
 
-def span(study: Benchmark, name: str) -> tuple[float, float]:
-    """Return the least and the largest of these ratios over all cases and `COMPARED` errors."""
-    found = [ratio(study, case, name, error) for case in study.cases for error in COMPARED]
-    known = [each for each in found if each is not None]
-    return min(known, default=math.nan), max(known, default=math.nan)
+def evaluations(study: Benchmark) -> Table:
+    """Return how often the fastest settings that keep an error evaluate the accelerations."""
+
+    def count(found: Sequence[Point], error: float) -> str:
+        best = points.cheapest(found, error)
+        return "-" if best is None or best.evaluations is None else f"{best.evaluations:,}"
+
+    title = "Evaluations of the accelerations"
+    return _comparison(study, COMPARED, title, count, lambda _, found, error: count(found, error))
 
 
-def others(study: Benchmark) -> Table:
-    """Return run times of RK4 and of other tools over that of the best reduced setting, at equal error.
-
-    In brackets are evaluations of accelerations, of the fastest setting that keeps the error.
-    """
+def _comparison(
+    study: Benchmark,
+    errors: Sequence[float],
+    title: str,
+    best_cell: Callable[[Sequence[Point], float], str],
+    cell: Callable[[Sequence[Point], Sequence[Point], float], str],
+) -> Table:
+    """Return a table with a row for each case and error, and a column for each of `OTHERS`."""
     rows = []
     for case in study.cases:
-        reduced = [point for point in study.of(case) if point.model == "reduced"]
-        for level in COMPARED:
-            cells = [milliseconds(points.time_for(reduced, level)) + _evaluations(reduced, level)]
-            for name in OTHERS:
-                found = ratio(study, case, name, level)
-                cells.append("-" if found is None else two_digits(found) + _evaluations(_by(study, case, name), level))
-            rows.append((f"{case}, {level:.0e} rad", *cells))
-    title = "Run time of others over that of the best reduced setting (under 1 they are faster), and evaluations"
+        best = _reduced(study, case)
+        for error in errors:
+            cells = [cell(best, _of(study, case, name), error) for name in OTHERS]
+            rows.append((f"{case}, {error:.0e} rad", best_cell(best, error), *cells))
     return Table(title, ("error", "best reduced", *OTHERS), rows)
 
 
-def whole_calls(study: Benchmark) -> Table:
-    """Return the times of whole calls: of `mjbeer.simulate` to a tolerance, and of other tools with all set-up counted.
+def _reduced(study: Benchmark, case: str) -> list[Point]:
+    """Return the points of a case on a model without a constraint."""
+    return [point for point in study.of(case) if point.model == "reduced"]
 
-    mjbeer's goes from the scene to a trajectory that judges itself. Of SciPy the fastest setting counts that keeps the
-    error, which nobody knows beforehand; heyoka compiles each scene's equations anew.
+
+def _of(study: Benchmark, case: str, name: str) -> list[Point]:
+    """Return the points of a case on the curve of one of `OTHERS`."""
+    if name == RK4:
+        return [point for point in _reduced(study, case) if point.method == "RK4"]
+    return [point for point in study.of(case) if point.model == name]
+
+
+def ratio_range(study: Benchmark, name: str, error: float) -> str:
+    """Return the least and the largest run time of one of `OTHERS` over all cases of two seconds.
+
+    They are divided by that of mjbeer's best reduced setting, at equal error [rad].
+    """
+    known = []
+    for case in study.cases:
+        ratio = points.time_ratio(_of(study, case, name), _reduced(study, case), error)
+        if ratio is not None:
+            known.append(ratio.of_least)
+    if not known:
+        return "-"
+    return f"{two_digits(min(known))} to {two_digits(max(known))}"
+
+
+def whole_calls(study: Benchmark) -> Table:
+    """Return the times of whole calls: of `mjbeer.simulate` to a tolerance, and of other tools.
+
+    mjbeer's goes from the scene to a trajectory that judges itself. Of the others the fastest
+    setting counts that keeps the error, which nobody knows beforehand; two of them compile the
+    equations of each scene anew.
     """
     rows = []
     for case in study.cases:
-        for error in COMPARED[:3]:
-            whole = [point for point in study.of(case) if point.model == WHOLE and math.isclose(point.value, error)]
-            if not whole:
+        for error in COMPARED:
+            calls = [
+                point
+                for point in study.of(case)
+                if point.model == WHOLE_CALL and math.isclose(point.value, error)
+            ]
+            if not calls:
                 continue
-            best = points.cheapest([point for name in OTHERS[1:3] for point in _by(study, case, name)], error)
-            compiled = points.cheapest(_by(study, case, "heyoka"), error)
-            scipy = over = heyoka = "-"
-            if best is not None:
-                scipy = f"{milliseconds(best.time)} ({best.model.removeprefix('SciPy ')})"
-                over = two_digits(best.time / whole[0].time)
-            if compiled is not None and compiled.setup is not None:
-                heyoka = f"{milliseconds(compiled.setup)} + {milliseconds(compiled.time)}"
-            mine = milliseconds(whole[0].time), f"{whole[0].error:.1e}"
-            rows.append((f"{case}, {error:.0e} rad", *mine, scipy, over, heyoka))
-    columns = "mjbeer.simulate", "its error [rad]", "SciPy's best", "over mjbeer's", "heyoka, compiling + run"
-    return Table("Whole calls, with all set-up", ("tolerance", *columns), rows)
+            call = calls[0]
+            interpreted = points.cheapest(_of(study, case, ODEINT), error)
+            cells = [spread(call.times), f"{call.error:.1e}"]
+            cells.append("-" if interpreted is None else spread(interpreted.times))
+            for name in (COMPILED_DOP853, HEYOKA):
+                best = points.cheapest(_of(study, case, name), error)
+                cells.append("-" if best is None else _with_setup(best))
+            rows.append((f"{case}, {error:.0e} rad", *cells))
+    columns = (
+        "tolerance",
+        WHOLE_CALL,
+        "its error [rad]",
+        ODEINT,
+        f"{COMPILED_DOP853}: compiling + run",
+    )
+    return Table("Whole calls, with all set-up", (*columns, f"{HEYOKA}: compiling + run"), rows)
+
+
+def _with_setup(point: Point) -> str:
+    """Return the time of what is done once, and that of a run."""
+    setup = math.nan if point.setup is None else point.setup
+    return f"{milliseconds(setup)} + {milliseconds(point.time)}"
+
+
+def drift(study: Benchmark, case: str) -> Table:
+    """Return the settings of a long case with their run times, errors and drifts of energy."""
+    rows = []
+    for point in study.of(case):
+        energy = math.nan if point.energy_drift is None else point.energy_drift
+        setting = (
+            f"{point.model}, {point.setting}" if point.method else f"{point.model} {point.setting}"
+        )
+        rows.append((setting, _seconds(point.times), f"{point.error:.1e}", f"{energy:.1e}"))
+    columns = ("setting", "run time [s]", "largest error [rad]", "drift of energy")
+    return Table(f"{case}: a motion of 1,000 s", columns, rows)
+
+
+def _seconds(times: Sequence[float]) -> str:
+    """Return the least and the largest of some times [s]."""
+    return f"{min(times):.2g} to {max(times):.2g}"
+
+
+def cheapest(study: Benchmark, case: str) -> Table:
+    """Return the fastest setting of a case for each error and way of rolling, with its run time."""
+    found = study.of(case)
+    rollings = [name for name in ROLLINGS if any(point.model == name for point in found)]
+    rows = []
+    for level in points.LEVELS:
+        cells = []
+        for rolling in rollings:
+            best = points.cheapest([point for point in found if point.model == rolling], level)
+            cells.append("not reached" if best is None else f"{best.setting}: {spread(best.times)}")
+        rows.append((f"{level:.0e} rad", *cells))
+    title = f"{case}: fastest setting for an error, and its run time"
+    return Table(title, ("error at most", *rollings), rows)
+
+
+def convergence(study: Benchmark, case: str) -> Table:
+    """Return the errors of constraints at timesteps that are halved, with the order in brackets.
+
+    The order is the power of the timestep with which the error has fallen since the row above.
+    """
+    found = study.of(case)
+    curves = [curve for curve in _CONTACT if any(point.curve == curve for point in found)]
+    errors = {
+        curve: {point.value: point.error for point in found if point.curve == curve}
+        for curve in curves
+    }
+    timesteps = sorted({step for of_curve in errors.values() for step in of_curve}, reverse=True)
+    rows = []
+    for step in timesteps:
+        cells = []
+        for curve in curves:
+            error = errors[curve].get(step)
+            before = errors[curve].get(2 * step)
+            if error is None:
+                cells.append("-")
+            elif before is None:
+                cells.append(f"{error:.1e}")
+            else:
+                order = round(math.log2(before / error), 1) + 0.0  # and no -0.0
+                cells.append(f"{error:.1e} ({order:.1f})")
+        rows.append((milliseconds(step), *cells))
+    title = f"{case}: largest error [rad] by timestep, with the order of its convergence"
+    return Table(title, ("timestep", *(curve.label for curve in curves)), rows)
 
 
 def two_digits(value: float) -> str:
     """Return a positive number with two digits."""
     return f"{float(f'{value:.2g}'):g}"
-
-
-def _evaluations(found: list[Point], error: float) -> str:
-    best = points.cheapest(found, error)
-    return "" if best is None or best.evaluations is None else f" ({best.evaluations:,})"
-
-
-def draw(study: Benchmark, path: pathlib.Path) -> None:
-    """Draw the scenes of a study, each in a panel, and write them to `path` with .svg appended.
-
-    Raises:
-      OutputError: if a file cannot be written.
-    """
-    cases = study.cases
-    columns = min(2, len(cases))
-    rows = -(-len(cases) // columns)
-    stories = [(story := CASES[case].story)[0].upper() + story[1:] for case in cases]
-    title, subtitle = "What accuracy costs: mjbeer, MuJoCo, SciPy and heyoka", ""
-    if len(cases) == 1:
-        title, _, subtitle = stories[0].partition(", ")
-    width, height = (6.2, 6.4) if len(cases) == 1 else (11, 4.4 * rows + 1.5)
-    with chart(path, rows, columns, width, height, title, subtitle) as panels:
-        for axes in panels[len(cases) :]:
-            axes.set_visible(False)
-        for axes, case, story in zip(panels, cases, stories, strict=False):
-            _draw(axes, study.of(case))
-            axes.set(xscale="log", yscale="log", ylim=(_FLOOR / 3, _CEILING), title=story if len(cases) > 1 else "")
-            axes.set(xlabel="run time of 2 s of motion [ms]", ylabel="largest error of φ and u/a [rad]")
-            axes.minorticks_off()
-        name_below(panels, 3 if len(cases) > 1 else 2)
-
-
-def _draw(axes: Axes, found: Sequence[Point]) -> None:
-    """Draw the curves of a scene that have points."""
-    for curve, (name, colour, line) in _LINES.items():
-        if shown := [point for point in found if point.curve == curve and point.error < _CEILING]:
-            times, errors = [1e3 * point.time for point in shown], [max(point.error, _FLOOR) for point in shown]
-            size = 9 if curve.model in USUAL else 5
-            axes.plot(times, errors, line, label=name, color=colour, markersize=size, linewidth=1.3)

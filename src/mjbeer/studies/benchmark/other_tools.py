@@ -1,147 +1,237 @@
-"""Other tools that compute the motion of a scene: SciPy and heyoka, on equations of motion that are written by hand.
+"""Other tools that compute the motion of a scene, on equations of motion that are written by hand.
 
-A frozen load has the state (phi, phi_dot), and u = a phi; a sliding one (u, phi, u_dot, phi_dot). With
-p = depth sin(bottom) and q = depth cos(bottom) of the scene's `Oscillator`, and M_e = m + m_can + I_can/a^2,
+A frozen load has the state (phi, phi_dot), and u = a phi; a sliding one (u, phi, u_dot, phi_dot).
+With p = depth sin(bottom) and q = depth cos(bottom) of the scene's `Oscillator`, and
+M_e = m + m_can + I_can/a^2,
 
     frozen:   phi_ddot = (slope + p cos(phi) - (q + chord/4 phi_dot^2) sin(phi))
-                         / (base + chord/2 - chord/2 cos(phi)),                               eq. (52)
-    sliding:  phi_ddot = (p cos(phi) - (q + swing phi_dot^2 cos(phi)) sin(phi)) / (base + swing sin^2(phi)),
-              u_ddot = A + m b/M_e (cos(phi) phi_ddot - sin(phi) phi_dot^2),                  eqs. (46), (47)
+                         / (base + chord/2 - chord/2 cos(phi)),                      eq. (52)
+    sliding:  phi_ddot = (p cos(phi) - (q + coupling phi_dot^2 cos(phi)) sin(phi))
+                         / (base + coupling sin^2(phi)),
+              u_ddot = A + m b/M_e (cos(phi) phi_ddot - sin(phi) phi_dot^2),         eqs. (46), (47)
 
 with A the steady acceleration of footnote 4. An evaluation needs one sine and one cosine.
+
+The tools are SciPy's odeint, which is LSODA, with the equations interpreted and compiled; DOP853
+with the equations compiled, so that neither Python nor MuJoCo is called; and heyoka. A whole call
+of mjbeer is timed like another tool.
 """
 
 import importlib
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from mjbeer.model.joints import rolling_coordinates
 from mjbeer.model.setting import Setting
 from mjbeer.simulation.simulate import integrate as simulate
+from mjbeer.studies.benchmark.points import Case
+from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.scene import Scene
 
 RightHandSide = Callable[[float, Sequence[Any]], tuple[Any, ...]]
-Samples = tuple[np.ndarray, np.ndarray, int | None]
-"""phi [rad] and u [m], with one entry for each sample, and how often accelerations were evaluated, if that is known."""
-Integrate = Callable[[], Samples]
-"""A function that integrates a motion from its start at every call."""
 Function = Callable[[Any], Any]
-WHOLE = "mjbeer.simulate"
-"""The name of whole calls of mjbeer, which are timed like another tool."""
+ODEINT = "SciPy odeint"
+"""LSODA, whose loop is compiled, and which calls the equations in interpreted Python."""
+COMPILED_ODEINT = "SciPy odeint, compiled equations"
+"""The same, with equations that numba has compiled; it still calls them as a Python function."""
+COMPILED_DOP853 = "DOP853, compiled equations"
+"""The method of SciPy's DOP853 in compiled code, mjbeer's own, which calls compiled equations."""
+HEYOKA = "heyoka"
+WHOLE_CALL = "mjbeer.simulate"
+"""A whole call of mjbeer, from the scene to a run that has judged itself."""
+_MOST_STEPS = 100_000
+"""Most steps of odeint between two samples: its own limit of 500 is too low for a second."""
 
 
-def right_hand_side(scene: Scene, sin: Function = math.sin, cos: Function = math.cos) -> RightHandSide:
-    """Return the function f(t, state) that gives the rates of change of a scene's state [rad, m, and per s].
+class Samples(NamedTuple):
+    """What a run returns."""
 
-    The scene has no damping. Pass the state as plain floats: with NumPy's scalars the function takes four times as
-    long. With the `sin` and `cos` of a library of symbols, it returns symbols.
+    motion: Coordinates
+    evaluations: int | None
+    """How often accelerations were evaluated, if that is known."""
+
+
+@dataclass(frozen=True)
+class Solver:
+    """A setting that has been set up: its run, which is timed, and what comes after."""
+
+    run: Callable[[], Any]
+    """Integrates the motion from its start, at every call."""
+    read: Callable[[Any], Samples]
+    """Takes what `run` returned."""
+
+
+@dataclass(frozen=True)
+class OtherTool:
+    """A tool that computes the motion of a scene."""
+
+    tolerances: tuple[float, ...]
+    """The tolerances to be tried, finest last."""
+    set_up: Callable[[Case, float], Solver]
+    """Takes a case and a tolerance. Equations, models and compilation are done there, so that only
+    `Solver.run` need be timed."""
+
+
+def right_hand_side(
+    scene: Scene, sin: Function = math.sin, cos: Function = math.cos
+) -> RightHandSide:
+    """Return the function f(t, state) that gives the rates of change of a state [rad, m, and per s].
+
+    The scene has no damping. Pass the state as plain floats: with NumPy's scalars the function
+    takes four times as long. With the `sin` and `cos` of a library of symbols, it returns symbols.
     """
-    form, mass = scene.oscillator, scene.effective_mass
-    p, q = form.depth * math.sin(form.bottom), form.depth * math.cos(form.bottom)
-    slope, half, quarter, middle = form.ramp, form.chord / 2, form.chord / 4, form.base + form.chord / 2
-    steady, share = scene.downhill_weight / mass, scene.load.moment / mass
+    form = scene.oscillator
+    p = form.depth * math.sin(form.bottom)
+    q = form.depth * math.cos(form.bottom)
+    slope = form.ramp
+    base = form.base
+    coupling = form.coupling
+    half_chord = form.chord / 2
+    quarter_chord = form.chord / 4
+    middle = base + half_chord
+    steady = scene.downhill_weight / scene.effective_mass
+    arm = scene.load.moment / scene.effective_mass
 
     def frozen(_: float, state: Sequence[Any]) -> tuple[Any, ...]:
         phi, phi_dot = state
-        s, c = sin(phi), cos(phi)
-        return phi_dot, (slope + p * c - (q + quarter * (phi_dot * phi_dot)) * s) / (middle - half * c)
+        s = sin(phi)
+        c = cos(phi)
+        torque = slope + p * c - (q + quarter_chord * (phi_dot * phi_dot)) * s
+        return phi_dot, torque / (middle - half_chord * c)
 
     def sliding(_: float, state: Sequence[Any]) -> tuple[Any, ...]:
         _u, phi, u_dot, phi_dot = state
-        s, c, square = sin(phi), cos(phi), phi_dot * phi_dot
-        phi_ddot = (p * c - (q + form.coupling * square * c) * s) / (form.base + form.coupling * (s * s))
-        return u_dot, phi_dot, steady + share * (c * phi_ddot - s * square), phi_ddot
+        s = sin(phi)
+        c = cos(phi)
+        square = phi_dot * phi_dot
+        phi_ddot = (p * c - (q + coupling * square * c) * s) / (base + coupling * (s * s))
+        u_ddot = steady + arm * (c * phi_ddot - s * square)
+        return u_dot, phi_dot, u_ddot, phi_ddot
 
     return frozen if scene.attachment == "frozen" else sliding
 
 
-def start(scene: Scene, phi0: float, phi_dot0: float) -> tuple[float, ...]:
-    """Return the initial state, in the order of `right_hand_side`, with u and u_dot from `Scene.initial_axis`."""
-    if scene.attachment == "frozen":
-        return phi0, phi_dot0
-    u, u_dot = scene.initial_axis(phi0, phi_dot0)
-    return u, phi0, u_dot, phi_dot0
+def initial_state(case: Case) -> tuple[float, ...]:
+    """Return the state at the start, in the order of `right_hand_side`."""
+    if case.scene.attachment == "frozen":
+        return case.phi0, case.phi_dot0
+    u, u_dot = case.scene.initial_axis(case.phi0, case.phi_dot0)
+    return u, case.phi0, u_dot, case.phi_dot0
 
 
-def coordinates(scene: Scene, states: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return phi [rad] and u [m] of states with one row for each sample."""
-    if scene.attachment == "frozen":
-        return states[:, 0], scene.can.radius * states[:, 0]
-    return states[:, 1], states[:, 0]
+def coordinates(case: Case, states: np.ndarray) -> Coordinates:
+    """Return the motion with these states of `right_hand_side`, shape (samples, components)."""
+    radius = case.scene.can.radius
+    if case.scene.attachment == "frozen":
+        phi, phi_dot = states.T
+        u = radius * phi
+        u_dot = radius * phi_dot
+    else:
+        u, phi, u_dot, phi_dot = states.T
+    motion = rolling_coordinates(radius, u, u_dot, phi, phi_dot)
+    return replace(motion, time=case.times)
 
 
-class OtherTool(NamedTuple):
-    """A tool that computes the motion of a scene, with its tolerances, finest last."""
+def _set_up_odeint(compiled: bool, case: Case, tolerance: float) -> Solver:
+    """Set SciPy's odeint up, which is LSODA in a compiled loop."""
+    from scipy.integrate import odeint
 
-    tolerances: tuple[float, ...]
-    set_up: Callable[[Scene, float, float, np.ndarray, float], Integrate]
-    """Takes scene, phi0 [rad], phi_dot0 [rad/s], times of samples [s] and tolerance. Equations, models and compilation
-    are done there, so that only calls of what it returns need be timed."""
+    rates: Callable[[float, np.ndarray], Any]
+    if compiled:
+        from mjbeer.studies.benchmark.compiled_equations import array_function  # imports numba
+
+        rates = array_function(case)
+    else:
+        equations = right_hand_side(case.scene)
+        rates = lambda time, state: equations(time, state.tolist())  # noqa: E731
+
+    def run() -> tuple[np.ndarray, dict[str, Any]]:
+        return odeint(
+            rates,
+            initial_state(case),
+            case.times,
+            tfirst=True,
+            full_output=True,
+            rtol=tolerance,
+            atol=tolerance,
+            mxstep=_MOST_STEPS,
+        )
+
+    def read(found: tuple[np.ndarray, dict[str, Any]]) -> Samples:
+        states, statistics = found
+        return Samples(coordinates(case, states), int(statistics["nfe"][-1]))
+
+    return Solver(run, read)
 
 
-def _scipy(lsoda: bool, scene: Scene, phi0: float, phi_dot0: float, times: np.ndarray, tolerance: float) -> Integrate:
-    """DOP853 of solve_ivp, or odeint, which is LSODA in a compiled loop."""
-    from scipy.integrate import odeint, solve_ivp
+def _set_up_dop853(case: Case, tolerance: float) -> Solver:
+    """Set DOP853 up on compiled equations; tolerances are those of `scipy.integrate.solve_ivp`."""
+    from mjbeer.integrators.dop853 import DOP853
+    from mjbeer.studies.benchmark.compiled_equations import CompiledEquations  # imports numba
 
-    rates, begin, span = right_hand_side(scene), start(scene, phi0, phi_dot0), (0.0, float(times[-1]))
-    allowed = {"rtol": tolerance, "atol": tolerance}
-    evaluate = lambda time, state: rates(time, state.tolist())  # noqa: E731
+    dynamics = CompiledEquations(case)
+    method = DOP853(dynamics, local_tolerance=tolerance)
+    start = np.array(initial_state(case))
 
-    def integrate() -> Samples:
-        if lsoda:
-            states, about = odeint(evaluate, begin, times, tfirst=True, full_output=True, **allowed)
-            return *coordinates(scene, states), int(about["nfe"][-1])
-        found = solve_ivp(evaluate, span, begin, method="DOP853", t_eval=times, **allowed)
-        return *coordinates(scene, found.y.T), int(found.nfev)
+    def run() -> np.ndarray:
+        dynamics.evaluations = 0
+        return method.run(start, case.times)
 
-    return integrate
+    return Solver(run, lambda states: Samples(coordinates(case, states), dynamics.evaluations))
 
 
-def _heyoka(scene: Scene, phi0: float, phi_dot0: float, times: np.ndarray, tolerance: float) -> Integrate:
-    """Taylor's method, compiled for the equations of one scene and one tolerance (github.com/bluescarni/heyoka.py)."""
+def _set_up_heyoka(case: Case, tolerance: float) -> Solver:
+    """Set Taylor's method up, compiled for one scene and tolerance (github.com/bluescarni/heyoka.py)."""
     import heyoka
 
-    begin, grid = np.array(start(scene, phi0, phi_dot0)), times.tolist()  # it reads a list faster than an array
-    variables = heyoka.make_vars(*(f"x{index}" for index in range(len(begin))))
-    rates = right_hand_side(scene, heyoka.sin, heyoka.cos)(0.0, variables)
-    heyoka.llvm_state.set_diskcache_enabled(False)  # the time of set-up must not depend on what ran before
+    start = np.array(initial_state(case))
+    grid = case.times.tolist()  # it reads a list faster than an array
+    variables = heyoka.make_vars(*(f"x{index}" for index in range(len(start))))
+    rates = right_hand_side(case.scene, heyoka.sin, heyoka.cos)(0.0, variables)
+    heyoka.llvm_state.set_diskcache_enabled(False)  # set-up must not be faster after another run
     heyoka.llvm_state.clear_memcache()
     equations = list(zip(variables, rates, strict=True))
-    integrator = heyoka.taylor_adaptive(equations, begin.tolist(), tol=tolerance, compact_mode=False)
+    integrator = heyoka.taylor_adaptive(
+        equations, start.tolist(), tol=tolerance, compact_mode=False
+    )
 
-    def integrate() -> Samples:
-        integrator.time, integrator.state[:] = 0.0, begin
+    def run() -> np.ndarray:
+        integrator.time = 0.0
+        integrator.state[:] = start
         *_, states = integrator.propagate_grid(grid)
-        return *coordinates(scene, states), None  # it has no evaluations, but Taylor series of each step
+        return states
 
-    return integrate
+    # It has no evaluations, but Taylor series of each step.
+    return Solver(run, lambda states: Samples(coordinates(case, states), None))
 
 
-def _whole_call(scene: Scene, phi0: float, phi_dot0: float, times: np.ndarray, tolerance: float) -> Integrate:
-    def integrate() -> Samples:
-        run = simulate(scene, phi0, phi_dot0, Setting(tolerance=tolerance), times)
-        return run.phi, run.u, None
-
-    return integrate
+def _set_up_whole_call(case: Case, tolerance: float) -> Solver:
+    """Set nothing up: what a call of mjbeer needs is part of it."""
+    setting = Setting(tolerance=tolerance)
+    run = partial(simulate, case.scene, case.phi0, case.phi_dot0, setting, case.times)
+    return Solver(run, lambda found: Samples(found, None))
 
 
 _DECADES = tuple(float(f"1e-{digits}") for digits in range(3, 17))
 OTHER_TOOLS = {
-    "SciPy DOP853": OtherTool(_DECADES[:11], partial(_scipy, False)),
-    "SciPy odeint": OtherTool(_DECADES[:11], partial(_scipy, True)),
-    "heyoka": OtherTool(_DECADES, _heyoka),
-    WHOLE: OtherTool(_DECADES[:10], _whole_call),
+    ODEINT: OtherTool(_DECADES[:11], partial(_set_up_odeint, False)),
+    COMPILED_ODEINT: OtherTool(_DECADES[:11], partial(_set_up_odeint, True)),
+    COMPILED_DOP853: OtherTool(_DECADES[:12], _set_up_dop853),
+    HEYOKA: OtherTool(_DECADES, _set_up_heyoka),
+    WHOLE_CALL: OtherTool(_DECADES[:10], _set_up_whole_call),
 }
 """All other tools by their names, whether they can be imported here or not."""
 
 
 def absent() -> dict[str, str]:
-    """Return the names of the other tools that cannot be imported here, each with the reason, on one line."""
+    """Return the names of the tools that cannot be imported here, each with the reason, on one line."""
     try:
-        importlib.import_module("heyoka")  # optional; in a checkout `pip install ".[peers]"` installs it
+        importlib.import_module("heyoka")  # optional: `pip install ".[peers]"` installs it
     except Exception as error:  # a package that lacks a library of the system may raise anything
-        return {"heyoka": " ".join(str(error).split()) or type(error).__name__}
+        return {HEYOKA: " ".join(str(error).split()) or type(error).__name__}
     return {}

@@ -3,14 +3,14 @@
 import json
 import math
 import pathlib
-from collections.abc import Iterable
-from dataclasses import asdict, dataclass, field
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from mjbeer.checks.as_json import document
 from mjbeer.model.setting import Rolling
-from mjbeer.studies.study import document
 from mjbeer.theory.can import Can
 from mjbeer.theory.scene import Scene, frozen, pendulum, sliding
 from mjbeer.theory.trajectory import Trajectory, exact
@@ -19,14 +19,17 @@ COMMAND = "mjbeer benchmark"
 SHIPPED = pathlib.Path(__file__).with_name("study.json")
 """The benchmark that comes with mjbeer: `mjbeer benchmark` wrote it."""
 INTERVAL = 32e-3
-"""Time between two samples [s]. It is a power of two times every timestep tried with MuJoCo's integrators, so that all
-runs have the same samples without interpolation."""
-TIMES = INTERVAL * np.arange(65)
-"""The times of the samples [s]."""
+"""Time between two samples [s]. It is a power of two times every timestep tried with MuJoCo's
+integrators, so that all runs have the same samples without interpolation."""
+_SHORT = INTERVAL * np.arange(65)
+"""Times of the samples of a short motion [s]: 2.048 s."""
+_LONG = 32 * INTERVAL * np.arange(978)
+"""Times of the samples of a long one [s]: 1,000.448 s."""
 
 
-class Case(NamedTuple):
-    """A scene and the start of its motion, at rest."""
+@dataclass(frozen=True, eq=False)
+class Case:
+    """A motion to be computed: a scene, a start, and the times of samples."""
 
     name: str
     scene: Scene
@@ -34,35 +37,52 @@ class Case(NamedTuple):
     """Initial phi [rad]."""
     story: str
     """The case in a few words, for titles."""
+    phi_dot0: float = 0.0
+    """Initial phi_dot [rad/s]."""
+    times: np.ndarray = field(default_factory=lambda: _SHORT)
+    """The times of the samples [s]."""
+
+    @property
+    def is_long(self) -> bool:
+        """Return whether this is the long motion, which is for drift: few settings are run."""
+        return self.times is _LONG
 
     def truth(self) -> Trajectory:
         """Return the exact motion at the times of the samples."""
-        return exact(self.scene, TIMES, self.phi0)
+        return exact(self.scene, self.times, self.phi0, self.phi_dot0)
 
 
+_FROZEN = "frozen beer, rocking from its surface along the incline"
 _ALL = (
     Case("sliding", sliding(), 1.0, "beer that slides in a massless can, from 1 rad"),
-    Case("sliding-metal", sliding(can=Can.sheet_metal()), 1.0, "beer that slides in a metal can, from 1 rad"),
-    Case("frozen", frozen(), 0.0, "frozen beer, rocking from its surface along the incline"),
+    Case(
+        "sliding-metal",
+        sliding(can=Can.sheet_metal()),
+        1.0,
+        "beer that slides in a metal can, from 1 rad",
+    ),
+    Case("frozen", frozen(), 0.0, _FROZEN),
     Case("frozen-wide", frozen(), 1.0, "frozen beer, rocking widely from 1 rad"),
     Case("pendulum", pendulum(), 1.0, "a pendulum on the axle of a wheel, from 1 rad"),
+    Case("frozen-long", frozen(), 0.0, f"{_FROZEN}, for 1,000 s", times=_LONG),
 )
 CASES = {case.name: case for case in _ALL}
 """All cases."""
-TIMESTEP, TOLERANCE = "timestep", "tolerance"
+TIMESTEP = "timestep"
+TOLERANCE = "tolerance"
 CHOSEN = "mjbeer"
 """The method of runs to a tolerance, which choose their integrator and its steps."""
 LEVELS = tuple(10.0**-k for k in range(2, 13, 2))
-"""The errors [rad] for which tables and plots have the fastest setting."""
+"""The errors [rad] for which tables have the fastest setting."""
 USUAL: dict[str, Rolling] = {"equality, defaults": "equality", "contact, defaults": "contact"}
 """Models as people usually write them, by their way of rolling."""
 
 
 class Curve(NamedTuple):
-    """A way of rolling and a method, run at a ladder of timesteps or tolerances: one line of the diagram."""
+    """A way of rolling and a method, run at a ladder of timesteps or tolerances."""
 
     model: str
-    """A way of rolling, the name of a setting as people usually write it (USUAL), or the name of another tool."""
+    """A way of rolling, the name of a model as people usually write it, or that of another tool."""
     method: str
     """The integrator, or `CHOSEN`; empty for another tool, which has its own."""
     parameter: str = TIMESTEP
@@ -87,6 +107,8 @@ class Point:
     phi_max: float = math.inf
     u_max: float = math.inf
     """Largest errors of phi and of u/a, with a the can's radius [rad]."""
+    energy_drift: float | None = None
+    """Largest change of the energy at a sample, divided by the swing's kinetic energy."""
     evaluations: int | None = None
     """Evaluations of accelerations in a run; None where a tool does not tell."""
     setup: float | None = None
@@ -94,7 +116,7 @@ class Point:
     failure: str | None = None
     """The message of the exception if the run failed."""
     times: list[float] = field(default_factory=list)
-    """Run times in the rounds [s]."""
+    """Run times in the rounds [s], of the processor."""
 
     @property
     def curve(self) -> Curve:
@@ -114,13 +136,30 @@ class Point:
     @property
     def setting(self) -> str:
         """The setting in a few words: its method, and its timestep [ms] or its tolerance."""
-        value = f"{self.value:g}" if self.parameter == TOLERANCE else milliseconds(self.value)
-        return f"{self.method} {'to ' if self.parameter == TOLERANCE else ''}{value}".strip()
+        if self.parameter == TOLERANCE:
+            return f"{self.method} to {self.value:g}".strip()
+        return f"{self.method} {milliseconds(self.value)}"
+
+    def of_round(self, number: int) -> "Point":
+        """Return the point as if it had been timed in one round only."""
+        return replace(self, times=[self.times[number]])
 
 
 def milliseconds(time: float) -> str:
     """Return a time [s] as text, in milliseconds; an infinite one is that of what no setting reached."""
     return f"{1e3 * time:.3g} ms" if math.isfinite(time) else "not reached"
+
+
+def spread(times: Sequence[float]) -> str:
+    """Return the least and the largest of some times [s] as text, in milliseconds.
+
+    Infinite times are those of what no setting reached.
+    """
+    if not math.isfinite(max(times)):
+        return milliseconds(math.inf)
+    least = f"{1e3 * min(times):.3g}"
+    largest = f"{1e3 * max(times):.3g}"
+    return f"{least} ms" if least == largest else f"{least} to {largest} ms"
 
 
 @dataclass
@@ -135,8 +174,11 @@ class Benchmark:
     def load(cls, path: pathlib.Path) -> "Benchmark":
         """Return the benchmark in a file that `json` is in."""
         content = json.loads(path.read_text(encoding="utf-8"))
-        known = ({name: value for name, value in each.items() if value is not None} for each in content["points"])
-        return cls(content["settings"], content["machine"], [Point(**each) for each in known])
+        points = []
+        for row in content["points"]:
+            known = {name: value for name, value in row.items() if value is not None}
+            points.append(Point(**known))
+        return cls(content["settings"], content["machine"], points)
 
     def json(self) -> str:
         """Return the study as JSON, with a line a point."""
@@ -145,11 +187,24 @@ class Benchmark:
 
     def of(self, case: str) -> list[Point]:
         """Return the points of a case that have an error and a run time."""
-        return [point for point in self.points if point.case == case and point.error < math.inf and point.times]
+        return [
+            point
+            for point in self.points
+            if point.case == case and point.error < math.inf and point.times
+        ]
 
     @property
     def cases(self) -> list[str]:
-        """The cases of the points, in their order."""
+        """The cases of two seconds, in their order."""
+        return [name for name in self._names if not CASES[name].is_long]
+
+    @property
+    def long_cases(self) -> list[str]:
+        """The cases of 1,000 s."""
+        return [name for name in self._names if CASES[name].is_long]
+
+    @property
+    def _names(self) -> list[str]:
         return list(dict.fromkeys(point.case for point in self.points))
 
 
@@ -164,13 +219,49 @@ def pareto_front(points: Iterable[Point]) -> list[Point]:
 
 def cheapest(points: Iterable[Point], error: float) -> Point | None:
     """Return the fastest point whose error is at most `error` [rad]; None if there is none."""
-    return min((point for point in points if point.error <= error), key=lambda point: point.time, default=None)
+    exact_enough = [point for point in points if point.error <= error]
+    return min(exact_enough, key=lambda point: point.time, default=None)
 
 
 def time_for(points: Iterable[Point], error: float) -> float:
-    """Return the run time [s] for an `error` [rad], interpolated on the front as a power law, or infinity."""
+    """Return the run time [s] for an `error` [rad], interpolated on the front as a power law.
+
+    It is infinite if no point reaches the error.
+    """
     best = pareto_front(points)
     if not best or best[-1].error > error:
         return math.inf
-    errors, times = [-math.log(point.error) for point in best], [math.log(point.time) for point in best]
-    return math.exp(np.interp(-math.log(error), errors, times))
+    digits = [-math.log(point.error) for point in best]
+    times = [math.log(point.time) for point in best]
+    return math.exp(np.interp(-math.log(error), digits, times))
+
+
+def times_in_rounds(points: Sequence[Point], error: float) -> list[float]:
+    """Return the run time [s] for an `error` [rad] in each round, as `time_for` has it."""
+    rounds = range(min((len(point.times) for point in points), default=0))
+    return [time_for([point.of_round(number) for point in points], error) for number in rounds]
+
+
+class Ratio(NamedTuple):
+    """Run time of some settings divided by that of others, at equal error."""
+
+    of_least: float
+    """Ratio of the least times of all rounds."""
+    smallest: float
+    """The smallest of the ratios in single rounds."""
+    largest: float
+    """The largest of them."""
+
+
+def time_ratio(points: Sequence[Point], reference: Sequence[Point], error: float) -> Ratio | None:
+    """Return the run time of `points` divided by that of `reference`, at equal error [rad].
+
+    It is None if one of both does not reach the error.
+    """
+    if cheapest(points, error) is None or cheapest(reference, error) is None:
+        return None
+    times = times_in_rounds(points, error)
+    reference_times = times_in_rounds(reference, error)
+    in_rounds = [time / other for time, other in zip(times, reference_times, strict=True)]
+    of_least = time_for(points, error) / time_for(reference, error)
+    return Ratio(of_least, min(in_rounds), max(in_rounds))

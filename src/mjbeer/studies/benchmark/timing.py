@@ -2,8 +2,9 @@
 
 import gc
 import math
+import statistics
 import time
-from collections.abc import Callable, Container, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -16,56 +17,131 @@ from mjbeer.exceptions import DivergenceError, MjbeerError
 from mjbeer.integrators.mujoco_steps import MuJoCoSteps
 from mjbeer.model.build import specify
 from mjbeer.model.joints import initial_state, to_coordinates
-from mjbeer.model.setting import MJBEER_INTEGRATORS, MUJOCO_INTEGRATORS, ROLLINGS, Setting, supported
+from mjbeer.model.setting import MJBEER_INTEGRATORS, MUJOCO_INTEGRATORS, Setting
 from mjbeer.output.terminal import progress_bar
 from mjbeer.simulation.methods import fixed_method, model_numbers
 from mjbeer.simulation.solve import solve
 from mjbeer.simulation.stepped_model import SteppedModel
-from mjbeer.studies.benchmark import other_tools, points
-from mjbeer.studies.benchmark.other_tools import OTHER_TOOLS, Samples
-from mjbeer.studies.benchmark.points import CASES, Benchmark, Case, Curve, Point
+from mjbeer.studies.benchmark import ladders, other_tools
+from mjbeer.studies.benchmark.other_tools import OTHER_TOOLS, Samples, Solver
+from mjbeer.studies.benchmark.points import CASES, TIMESTEP, USUAL, Benchmark, Case, Point
 from mjbeer.studies.study import machine
+from mjbeer.theory.record import Record
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
 
 REPEATS = 5
-"""Timed rounds. Each round times every setting once, so that a slow minute of the machine hits all settings alike."""
-_SHORT = 0.05
-"""A run shorter than this [s] is timed twice and the first time dropped, so that caches and predictors are warm."""
+"""Timed rounds. Each round times every setting once, so that a slow minute of the machine hits all
+settings alike."""
+_WARM = 0.05
+"""A run shorter than this [s] is run once before, so that caches and predictors are warm."""
+_BRIEF = 0.01
+"""A run that is shorter than this [s] is repeated for so long, as one of a tenth of a millisecond is at
+the mercy of the system. Its time in a round is the median."""
 
 
-def conduct(names: Sequence[str], quick: bool, console: Console | None) -> Benchmark:
+def run(names: Sequence[str], quick: bool, console: Console | None) -> Benchmark:
     """Measure the cases of some names: first all errors, then all times, in rounds.
 
-    A setting that fails is a point with the reason. A tool that cannot be imported takes no part; the settings of the
-    study have its name and the reason.
+    A setting that fails is a point with the reason. A tool that cannot be imported takes no part;
+    the settings of the study have its name and the reason.
     """
-    cases, missing = [CASES[name] for name in names], other_tools.absent()
-    curves = [(case, *curve) for case in cases for curve in ladders(case.scene, quick, missing).items()]
-    study = Benchmark({"cases": list(names), "quick": quick, "repeats": REPEATS, "absent": missing}, machine(), [])
-    ready: dict[str, list[tuple[Point, Callable[[], Any]]]] = {case.name: [] for case in cases}
-    with progress_bar(console, len(curves) + REPEATS * len(cases)) as begin:
-        for case, curve, values in curves:
-            begin(f"{case.name}: {curve.label}")
+    missing = other_tools.absent()
+    settings = {"cases": list(names), "quick": quick, "repeats": REPEATS, "absent": missing}
+    study = Benchmark(settings, machine(), [])
+    curves = {name: ladders.ladders(CASES[name], quick, missing) for name in names}
+    count = sum(len(of_case) for of_case in curves.values())
+    timed: dict[str, list[tuple[Point, Solver]]] = {name: [] for name in names}
+    with progress_bar(console, count + REPEATS * len(names)) as begin:
+        for name, of_case in curves.items():
+            case = CASES[name]
             truth = case.truth()
-            for value in values:
-                point = Point(case.name, curve.model, curve.method, curve.parameter, value)
-                study.points.append(point)
-                try:
-                    ready[case.name].append((point, measure(case, point, truth)))
-                except MjbeerError as error:
-                    point.failure = str(error)
-        for repeat in range(REPEATS):
-            for case in cases:
-                begin(f"{case.name}: round {repeat + 1}")
-                gc.collect()
-                gc.disable()
-                try:
-                    for point, solve in ready[case.name]:
-                        point.times.append(_seconds(solve))
-                finally:
-                    gc.enable()
+            for curve, values in of_case.items():
+                begin(f"{name}: {curve.label}")
+                for value in values:
+                    point = Point(name, curve.model, curve.method, curve.parameter, value)
+                    study.points.append(point)
+                    try:
+                        timed[name].append((point, measure(case, point, truth)))
+                    except MjbeerError as error:
+                        point.failure = str(error)
+        for number in range(1, REPEATS + 1):
+            for name in names:
+                begin(f"{name}: round {number}")
+                _time_all(timed[name])
     return study
+
+
+def _time_all(timed: Sequence[tuple[Point, Solver]]) -> None:
+    """Add a run time to each point; nothing is collected meanwhile."""
+    gc.collect()
+    gc.disable()
+    try:
+        for point, solver in timed:
+            point.times.append(_seconds(solver.run))
+    finally:
+        gc.enable()
+
+
+def _seconds(run: Callable[[], Any]) -> float:
+    """Return the run time in a round [s]."""
+    duration = _seconds_once(run)
+    if duration > _WARM:
+        return duration
+    durations = []
+    while sum(durations) < _BRIEF:
+        durations.append(_seconds_once(run))
+    return statistics.median(durations)
+
+
+def _seconds_once(run: Callable[[], Any]) -> float:
+    """Return the processor's time in one run [s]: waiting for other programs is not in it."""
+    begin = time.process_time()
+    run()
+    return time.process_time() - begin
+
+
+def measure(case: Case, point: Point, truth: Trajectory) -> Solver:
+    """Set a point up, run it once, and store its set-up time, evaluations, errors and drift in it.
+
+    Errors are those against the `truth`. What was set up is returned, to be timed.
+
+    Raises:
+      MjbeerError: if it cannot be set up, or fails, or its end is not finite.
+    """
+    began = time.process_time()
+    solver = _set_up(case, point)
+    point.setup = time.process_time() - began
+    motion, point.evaluations = solver.read(solver.run())
+    # A value that is not finite stays so.
+    if not (math.isfinite(motion.phi[-1]) and math.isfinite(motion.u[-1])):
+        raise DivergenceError(f"{point.curve.label}: the motion did not stay finite")
+    point.phi_max = float(np.abs(motion.phi - truth.phi).max())
+    point.u_max = float(np.abs(motion.u - truth.u).max()) / case.scene.can.radius
+    point.energy_drift = Record.of(motion, case.scene).energy_drift
+    return solver
+
+
+def _set_up(case: Case, point: Point) -> Solver:
+    """Set a point up: another tool, a model as people usually write it, or a setting of mjbeer."""
+    if point.model in OTHER_TOOLS:
+        return OTHER_TOOLS[point.model].set_up(case, point.value)
+    if point.model in USUAL:
+        return _set_up_usual(case, point)
+    return _set_up_setting(case, point)
+
+
+def _set_up_usual(case: Case, point: Point) -> Solver:
+    """Set up a model as people usually write it."""
+    model = usual_model(point.model, case.scene)
+    start = initial_state(model, case.scene, case.phi0, case.phi_dot0)
+    method = MuJoCoSteps(model, mujoco.MjData(model), [point.value], point.method)
+
+    def read(states: np.ndarray) -> Samples:
+        motion = to_coordinates(model, case.scene, states, case.times)
+        return Samples(motion, _evaluations_of_steps(case, point))
+
+    return Solver(partial(method.run, start, case.times), read)
 
 
 def usual_model(name: str, scene: Scene) -> mujoco.MjModel:
@@ -73,7 +149,7 @@ def usual_model(name: str, scene: Scene) -> mujoco.MjModel:
 
     The equality is written as u = a roll, in metres.
     """
-    spec = specify(scene, points.USUAL[name], integrator="Euler", timestep=2e-3)
+    spec = specify(scene, USUAL[name], integrator="Euler", timestep=2e-3)
     stock = mujoco.MjSpec().option
     spec.option.enableflags = stock.enableflags
     spec.option.impratio = stock.impratio
@@ -89,111 +165,34 @@ def usual_model(name: str, scene: Scene) -> mujoco.MjModel:
     return spec.compile()
 
 
-def ladders(scene: Scene, quick: bool = False, missing: Container[str] = ()) -> dict[Curve, tuple[float, ...]]:
-    """Return the curves of a scene, each with its timesteps [s] or tolerances [rad], coarsest first.
-
-    MuJoCo's integrators halve their timestep from one rung to the next; DOP853 starts with a larger one and halves it
-    in two rungs, and GaussJackson, whose error falls by four decades in a halving, halves it in four. With `quick`, the
-    ladders of MuJoCo's integrators end earlier, and all others have at most every second rung. Tools whose names are
-    among the `missing` have no curve.
-    """
-    every = 2 if quick else 1
-    steps = tuple(16e-3 / 2**k for k in range(6 if quick else 10))
-    tolerances = tuple(10.0**-k for k in range(3, 13, 3 if quick else 1))
-    large = tuple(128e-3 / 2 ** (k / 2) for k in range(0, 15, every))
-    found: dict[Curve, tuple[float, ...]] = {}
-    for rolling in (rolling for rolling in ROLLINGS if supported(scene, rolling)):
-        found |= {Curve(rolling, integrator): steps for integrator in MUJOCO_INTEGRATORS}
-        found[Curve(rolling, "DOP853")] = large
-        if rolling != "contact":  # which is too soft for a tolerance
-            found[Curve(rolling, points.CHOSEN, points.TOLERANCE)] = tolerances
-    found[Curve("reduced", "GaussJackson")] = tuple(32e-3 / 2 ** (k / 4) for k in range(0, 29, every))
-    found |= {Curve(name, "Euler"): (2e-3,) for name, rolling in points.USUAL.items() if supported(scene, rolling)}
-    others = {name: tool for name, tool in OTHER_TOOLS.items() if name not in missing}
-    return found | {Curve(name, "", points.TOLERANCE): tool.tolerances[::every] for name, tool in others.items()}
-
-
-def measure(case: Case, point: Point, truth: Trajectory) -> Callable[[], Any]:
-    """Set a point up and run it once; store its set-up time, evaluations, and errors against the exact motion in it.
-
-    Returned is what runs it again, to be timed.
-
-    Raises:
-      MjbeerError: if it cannot be set up, or fails, or its end is not finite.
-    """
-    began = time.perf_counter()
-    solve, motion = _set_up(case, point)
-    point.setup = time.perf_counter() - began
-    phi, u, point.evaluations = motion(solve())
-    if not (math.isfinite(phi[-1]) and math.isfinite(u[-1])):  # a value that is not finite stays so
-        raise DivergenceError(f"{point.curve.label}: the motion did not stay finite")
-    point.phi_max = float(np.abs(phi - truth.phi).max())
-    point.u_max = float(np.abs(u - truth.u).max()) / truth.scene.can.radius
-    return solve
-
-
-def _set_up(case: Case, point: Point) -> tuple[Callable[[], Any], Callable[[Any], Samples]]:
-    """Return what runs a point, and what makes samples from what it returns.
-
-    The point is another tool, a model as people usually write it, or a setting of mjbeer.
-    """
-    if point.model in OTHER_TOOLS:
-        tool = OTHER_TOOLS[point.model]
-        return tool.set_up(case.scene, case.phi0, 0.0, points.TIMES, point.value), lambda found: found
-    if point.model in points.USUAL:
-        return _set_up_usual(case, point)
-    return _set_up_setting(case, point)
-
-
-def _set_up_usual(case: Case, point: Point) -> tuple[Callable[[], Any], Callable[[Any], Samples]]:
-    """Return the same for a model as people usually write it."""
-    model = usual_model(point.model, case.scene)
-    start = initial_state(model, case.scene, case.phi0, 0.0)
-    method = MuJoCoSteps(model, mujoco.MjData(model), [point.value], point.method)
-
-    def samples(states: np.ndarray) -> Samples:
-        motion = to_coordinates(model, case.scene, states, points.TIMES)
-        return motion.phi, motion.u, _evaluations_of_steps(point)
-
-    return partial(method.run, start, points.TIMES), samples
-
-
-def _set_up_setting(case: Case, point: Point) -> tuple[Callable[[], Any], Callable[[Any], Samples]]:
-    """Return the same for a setting of mjbeer: the integrator alone, or all runs of a tolerance."""
-    given: dict[str, Any] = {"tolerance": point.value}
-    if point.parameter == points.TIMESTEP:
-        given = {"integrator": point.method, "timestep": point.value}
-    setting = replace(Setting(), rolling=point.model, **given)
-    stepped = SteppedModel(model_numbers(case.scene, setting))
-    start = stepped.initial_state(case.phi0, 0.0)
-    if setting.tolerance is None:
-        run = partial(fixed_method(stepped, setting).run, start, points.TIMES)
+def _set_up_setting(case: Case, point: Point) -> Solver:
+    """Set up a setting of mjbeer: the integrator alone, or all runs of a tolerance."""
+    if point.parameter == TIMESTEP:
+        setting = replace(
+            Setting(), rolling=point.model, integrator=point.method, timestep=point.value
+        )
     else:
-        run = lambda: solve(stepped, setting, start, points.TIMES).states  # noqa: E731
+        setting = replace(Setting(), rolling=point.model, tolerance=point.value)
+    stepped = SteppedModel(model_numbers(case.scene, setting))
+    start = stepped.initial_state(case.phi0, case.phi_dot0)
 
-    def samples(states: np.ndarray) -> Samples:
-        motion = to_coordinates(stepped.model, case.scene, states, points.TIMES)
-        count = _evaluations_of_steps(point) if point.method in MUJOCO_INTEGRATORS else None
+    def run_to_tolerance() -> np.ndarray:
+        return solve(stepped, setting, start, case.times).states
+
+    def read(states: np.ndarray) -> Samples:
+        motion = to_coordinates(stepped.model, case.scene, states, case.times)
+        if point.method in MUJOCO_INTEGRATORS:
+            return Samples(motion, _evaluations_of_steps(case, point))
         if point.method in MJBEER_INTEGRATORS:
-            count = stepped.dynamics.evaluations
-        return motion.phi, motion.u, count
+            return Samples(motion, stepped.dynamics.evaluations)
+        return Samples(motion, None)
 
-    return run, samples
+    if setting.tolerance is not None:
+        return Solver(run_to_tolerance, read)
+    return Solver(partial(fixed_method(stepped, setting).run, start, case.times), read)
 
 
-def _evaluations_of_steps(point: Point) -> int:
+def _evaluations_of_steps(case: Case, point: Point) -> int:
     """Return how often one of MuJoCo's integrators evaluates the accelerations with a fixed timestep."""
-    steps = round(float(points.TIMES[-1]) / point.value)
+    steps = round(float(case.times[-1]) / point.value)
     return 4 * steps if point.method == "RK4" else steps
-
-
-def _seconds(solve: Callable[[], Any]) -> float:
-    """Return the run time [s] with warm caches."""
-    duration = 0.0
-    for _ in range(2):
-        begin = time.perf_counter()
-        solve()
-        duration = time.perf_counter() - begin
-        if duration > _SHORT:
-            break
-    return duration

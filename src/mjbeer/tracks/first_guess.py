@@ -1,0 +1,144 @@
+"""Where the search begins: values on a grid, each with the place and the release that suit best."""
+
+import itertools
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from scipy import ndimage
+
+from mjbeer.theory.scene import Scene
+from mjbeer.tracks.track_model import TrackModel
+from mjbeer.tracks.unknowns import Unknown
+
+_STRETCHES = (0.5, 2.0)
+"""By how much a sliding load's incline may differ from the one that was simulated."""
+
+
+class FirstGuess(NamedTuple):
+    """Values of all unknowns, and how badly they suit the track's places.
+
+    `misfit` is the standard deviation [m], NaN if there is no such motion.
+    """
+
+    values: dict[str, float]
+    misfit: float
+
+
+def first_guesses(model: TrackModel, unknowns: Sequence[Unknown]) -> list[FirstGuess]:
+    """Return what was tried: first what suits better than all its neighbours on the grid.
+
+    Then comes the best of each fill and damping, then the rest, each sorted by misfit. Motions near
+    the fill of the fastest swing may lie in two valleys with no ridge that the grid could show.
+    """
+    axes = {}
+    for unknown in unknowns:
+        tried = _tried_values(unknown, model, unknowns)
+        axes[unknown.name] = sorted(set(tried))
+    guesses = []
+    for point in itertools.product(*axes.values()):
+        values = dict(zip(axes, point, strict=True))
+        guesses.append(guess_anywhere(model, values))
+
+    misfits = np.array([guess.misfit for guess in guesses])
+    misfits[np.isnan(misfits)] = math.inf
+    grid = misfits.reshape([len(axis) for axis in axes.values()])
+    lowest_nearby = ndimage.minimum_filter(grid, size=3, mode="nearest")
+    is_lowest = (grid == lowest_nearby).ravel()
+
+    by_misfit = np.argsort(misfits, kind="stable")[: np.isfinite(misfits).sum()].tolist()
+    valleys = [index for index in by_misfit if is_lowest[index]]
+    best_of_kind: dict[tuple[float | None, float | None], int] = {}
+    for index in by_misfit:
+        values = guesses[index].values
+        best_of_kind.setdefault((values.get("fill"), values.get("damping")), index)
+    ranking = dict.fromkeys([*valleys, *best_of_kind.values(), *by_misfit])
+    return [guesses[index] for index in ranking]
+
+
+def guess_anywhere(model: TrackModel, values: dict[str, float]) -> FirstGuess:
+    """Return values with the place and the release that suit best, of all in the whole track.
+
+    Releases are so close to each other that swings are in step for one of them.
+    """
+    count = min(2000, max(91, math.ceil(2.6 * model.duration / model.swing_time)))
+    releases = model.track.time[0] + model.duration * np.linspace(-1, 0.8, count)
+    return _best_release(model, values, releases, most_points=100)
+
+
+def guess_nearby(model: TrackModel, values: dict[str, float]) -> FirstGuess:
+    """Return values with the place and the release that suit best, up to some swings away.
+
+    For a release some swings too early or late, the can is ahead or behind and rocks in step. The
+    release among the values is one of those that are compared.
+    """
+    releases = values["released"] + 17 * model.swing_time * np.linspace(-1, 1, 201)
+    return _best_release(model, values, releases, most_points=2000)
+
+
+def _best_release(
+    model: TrackModel, values: dict[str, float], releases: np.ndarray, most_points: int
+) -> FirstGuess:
+    """Return values with the best of these releases, its place, and a sliding load's incline."""
+    points = slice(None, None, max(1, len(model.track.time) // most_points))
+    time = model.track.time[points]
+    along = model.track.along[points]
+    distances, _ = model.motion(values, time - releases[:, np.newaxis])  # (releases, points)
+    incline_is_sought = "incline" in values
+    if incline_is_sought and model.scene.attachment == "sliding":
+        stretches = _stretches(distances, along)
+    else:
+        stretches = np.ones(len(releases))
+    rest = along - stretches[:, np.newaxis] * distances
+    misfits = np.std(rest, axis=1)
+    best = int(np.argmin(misfits))
+    suited = dict(values, released=float(releases[best]), place=float(np.mean(rest[best])))
+    if incline_is_sought:
+        suited["incline"] = values["incline"] * float(stretches[best])
+    return FirstGuess(suited, float(misfits[best]))
+
+
+def _stretches(distances: np.ndarray, along: np.ndarray) -> np.ndarray:
+    """Return the factors by which distances are most like places, shape (releases,).
+
+    A sliding load's incline is to be multiplied by them: distances are nearly proportional to it.
+    """
+    centred = distances - distances.mean(axis=1, keepdims=True)
+    squares = np.maximum((centred**2).sum(axis=1), 1e-30)  # a can that still lies has none
+    return np.clip(centred @ along / squares, *_STRETCHES)
+
+
+def _tried_values(unknown: Unknown, model: TrackModel, unknowns: Sequence[Unknown]) -> list[float]:
+    """Return the values of one of the unknowns on the grid; what was measured has one.
+
+    Incline, damping and the release of a late track look alike, and so do two fills of ice.
+    """
+    guess = unknown.guess
+    if unknown.measured is not None:
+        return [guess]
+    if unknown.name == "incline" and not unknown.log:  # swings are to be in phase with the track's
+        phi0_is_sought = any(other.name == "phi0" for other in unknowns)
+        factors = (0.8, 1.0) if phi0_is_sought else (0.7, 0.85, 1.0, 1.2, 1.5)
+        return [factor * guess for factor in factors]
+    if unknown.name == "fill":
+        return [guess, *_tried_fills(model.scene, model.duration / model.swing_time)]
+    if unknown.name == "damping":
+        return [guess, 0.55, 0.75, 1.3, 1.8]
+    if unknown.name == "phi0":
+        return [guess, *np.linspace(-3, 3, 7).tolist()]
+    return [guess]
+
+
+def _tried_fills(scene: Scene, swings: float) -> list[float]:
+    """Return fills on the grid for a track of so many swings.
+
+    Swings that go on for ever get out of step where the frequency is a little off. The frequency
+    grows from 0 to the largest and falls to 0 again, nearly evenly in the square root of the fill.
+    So many fills are tried that one between two of them is out of step by a radian at most at
+    either end, if it is in step in the middle.
+    """
+    if scene.dissipates:
+        return np.linspace(0.05, 0.95, 19).tolist()
+    count = min(150, max(19, math.ceil(0.65 * swings)))
+    return (np.linspace(0.1, 0.985, count) ** 2).tolist()

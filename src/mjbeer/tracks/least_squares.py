@@ -1,0 +1,205 @@
+"""Least squares: the values whose motion is nearest to a track, and how far they may be off."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
+
+import numpy as np
+from scipy import optimize
+
+from mjbeer.tracks.first_guess import FirstGuess, guess_nearby
+from mjbeer.tracks.track_model import TrackModel
+from mjbeer.tracks.unknowns import (
+    Unknown,
+    distance_from_guess,
+    motion_slice,
+    to_values,
+    to_variables,
+)
+
+_FAR = 6.0
+"""Standard deviations of noise from which on a point is left out."""
+_LEAST_NOISE = 1e-6
+"""The noise that a track has at least, [m] or [rad]: that of the simulated motions."""
+_SAME = 1e-2
+"""How far variables of one and the same minimum may be apart; 1 is a large change."""
+_TOLD_APART = 9.0
+"""The difference of costs from which on a track tells minima apart: three standard errors."""
+
+
+class Weights(NamedTuple):
+    """By what distances from the track are divided, and which points count.
+
+    `noise` is the standard deviation of each channel [m] or [rad], shape (channels, 1); `kept` has
+    the shape (channels, points).
+    """
+
+    noise: np.ndarray
+    kept: np.ndarray
+
+
+class Uncertainty(NamedTuple):
+    """How far the variables of a minimum may be off, if the model is right.
+
+    Rows of `directions` are independent combinations of the variables; along each the standard
+    error is that of `widths`.
+    """
+
+    directions: np.ndarray
+    widths: np.ndarray
+
+    @property
+    def covariance(self) -> np.ndarray:
+        """Return the covariance of the variables, shape (unknowns, unknowns)."""
+        return (self.directions.T * self.widths**2) @ self.directions
+
+    @property
+    def deviations(self) -> np.ndarray:
+        """Return the standard deviations of the variables."""
+        return np.sqrt(np.diag(self.covariance))
+
+    @property
+    def correlation(self) -> np.ndarray:
+        """Return the correlation of the variables, shape (unknowns, unknowns)."""
+        return self.covariance / np.outer(self.deviations, self.deviations)
+
+
+@dataclass(frozen=True, eq=False)
+class Minimum:
+    """What a round of least squares found."""
+
+    variables: np.ndarray
+    """The solver's variables of the unknowns."""
+    residuals: np.ndarray
+    """What is left of the track's points, channel by channel, then of the measured values, all
+    divided by their errors."""
+    jacobian: np.ndarray
+    """The derivatives of the residuals, shape (residuals, unknowns)."""
+    converged: bool
+    """Whether the solver was not stopped by its largest number of steps."""
+    weights: Weights
+    """The weights of this round."""
+    next_weights: Weights
+    """The weights that suit what is left."""
+    cost: float
+    """Minus twice the logarithm of the likelihood with the next weights, up to a constant."""
+
+    def uncertainty(self) -> Uncertainty:
+        """Return how far the variables may be off."""
+        _, sizes, directions = np.linalg.svd(self.jacobian, full_matrices=False)
+        widths = 1 / np.maximum(sizes, 1e-6)  # finite where a direction changes nothing
+        return Uncertainty(directions, widths)
+
+
+def first_round(model: TrackModel, unknowns: Sequence[Unknown], guess: FirstGuess) -> Minimum:
+    """Return the minimum that is found from a guess, with its misfit as noise.
+
+    Raises:
+      ValueError: if there is no such motion.
+    """
+    noise = np.full((len(model.channels), 1), guess.misfit / model.scene.can.radius)  # [rad]
+    noise[model.channels.index("along")] = guess.misfit
+    weights = Weights(noise, np.ones(model.data.shape, bool))
+    return _minimize(model, unknowns, guess.values, weights, "2-point")
+
+
+def next_round(model: TrackModel, unknowns: Sequence[Unknown], minimum: Minimum) -> Minimum:
+    """Return the minimum near to another, with the weights and the swing at release that suit it.
+
+    Raises:
+      ValueError: if there is no such motion.
+    """
+    guess = guess_nearby(model, to_values(unknowns, minimum.variables))
+    # Near a separatrix an incline's effect changes within the step of the derivatives.
+    return _minimize(model, unknowns, guess.values, minimum.next_weights, "3-point")
+
+
+def distinct(unknowns: Sequence[Unknown], minima: Sequence[Minimum]) -> list[Minimum]:
+    """Return the minima whose motions differ, those with the least cost first."""
+    of_motion = motion_slice(unknowns)
+    chosen: list[Minimum] = []
+    for minimum in sorted(minima, key=lambda minimum: minimum.cost):
+        distances = [np.abs(minimum.variables - other.variables)[of_motion] for other in chosen]
+        if all(distance.max(initial=0.0) >= _SAME for distance in distances):
+            chosen.append(minimum)
+    return chosen
+
+
+def as_good_as_best(minima: Sequence[Minimum]) -> list[Minimum]:
+    """Return the minima that the track does not tell from the best of them."""
+    least = min(minimum.cost for minimum in minima)
+    return [minimum for minimum in minima if minimum.cost < least + _TOLD_APART]
+
+
+def nearest_to_guess(unknowns: Sequence[Unknown], minima: Sequence[Minimum]) -> Minimum:
+    """Return the minimum whose motion is nearest to the guess."""
+    return min(minima, key=lambda minimum: distance_from_guess(unknowns, minimum.variables))
+
+
+def _minimize(
+    model: TrackModel,
+    unknowns: Sequence[Unknown],
+    values: dict[str, float],
+    weights: Weights,
+    derivatives: Literal["2-point", "3-point"],
+) -> Minimum:
+    """Return the minimum that is found from some values."""
+    low = to_variables(unknowns, {unknown.name: unknown.low for unknown in unknowns})
+    high = to_variables(unknowns, {unknown.name: unknown.high for unknown in unknowns})
+    start = np.clip(to_variables(unknowns, values), low, high)
+    found = optimize.least_squares(
+        _residuals,
+        start,
+        jac=derivatives,
+        bounds=(low, high),
+        args=(model, unknowns, weights),
+        ftol=1e-6,
+        xtol=1e-9,
+        diff_step=1e-6,
+        max_nfev=100,
+    )
+    next_weights = _suitable_weights(model, to_values(unknowns, found.x), len(unknowns))
+    return Minimum(
+        variables=found.x,
+        residuals=found.fun,
+        jacobian=found.jac,
+        converged=found.status > 0,
+        weights=weights,
+        next_weights=next_weights,
+        cost=cost(next_weights, found.fun[model.data.size :]),
+    )
+
+
+def _residuals(
+    variables: np.ndarray, model: TrackModel, unknowns: Sequence[Unknown], weights: Weights
+) -> np.ndarray:
+    """Return the residuals of the track and of the measured values; NaN if there is no motion."""
+    values = to_values(unknowns, variables)
+    of_track = weights.kept * (model.predict(values) - model.data) / weights.noise
+    of_measured = []
+    for unknown in unknowns:
+        if unknown.measured is not None:
+            value, error = unknown.measured
+            of_measured.append((values[unknown.name] - value) / error)
+    return np.append(of_track, of_measured)
+
+
+def _suitable_weights(model: TrackModel, values: dict[str, float], unknowns: int) -> Weights:
+    """Return the noise of the track about a motion, and which points are not far from it."""
+    distances = np.abs(model.predict(values) - model.data)
+    deviations = 1.4826 * np.median(distances, axis=1, keepdims=True)  # of normal noise
+    kept = distances <= _FAR * deviations
+    spare = kept.sum(axis=1) - unknowns / len(model.channels)  # degrees of freedom of a channel
+    squares = ((kept * distances) ** 2).sum(axis=1)
+    noise = np.sqrt(_LEAST_NOISE**2 + squares / np.maximum(spare, 1.0))
+    return Weights(noise[:, np.newaxis], kept)
+
+
+def cost(weights: Weights, of_measured: np.ndarray) -> float:
+    """Return minus twice the logarithm of the likelihood of a track with suitable weights."""
+    points = weights.kept.shape[1]
+    of_track = 2 * points * math.fsum(np.log(weights.noise[:, 0]))
+    # A point that is left out counts as one at the limit, or leaving out a swing would pay.
+    of_left_out = _FAR**2 * int((~weights.kept).sum())
+    return of_track + of_left_out + float((of_measured**2).sum())

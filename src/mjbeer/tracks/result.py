@@ -1,0 +1,142 @@
+"""What a fit found: its scene and values with errors, in words, as a plot and as a film."""
+
+import math
+import os
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from mjbeer import require
+from mjbeer.drawing.words import in_words
+from mjbeer.simulation.run import Run
+from mjbeer.theory.scene import Scene
+from mjbeer.tracks.track import Track
+from mjbeer.tracks.unknowns import FITTABLE
+
+_LAW_ERROR = 0.1
+"""Relative error of a liquid's damping law itself: of W^1.5 and its polynomial."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Fit:
+    """A scene whose motion is that of a track: what follows from it, how well, and what does not.
+
+    Dictionaries are by name: of the unknowns, or of what was tracked, "along" [m], and perhaps
+    "roll" and "phi" [rad].
+    """
+
+    track: Track
+    scene: Scene
+    """The scene as fitted: its incline is the true one less the rolling resistance."""
+    values: dict[str, float]
+    """What was found of the scene, "damping" as a factor on its own law; "place" [m] and "released"
+    [s], where and when the can was let go, as the track counts; "bend", how far the middle of the
+    track is bent [m]; with a tracked roll "scale", by which the track is too long, and "turned",
+    the roll at first [rad]."""
+    errors: dict[str, float]
+    """The standard errors of the values, if the model is right."""
+    correlation: np.ndarray
+    """The correlation of these errors, shape (values, values)."""
+    noise: dict[str, float]
+    """The standard deviation of what was tracked from the model."""
+    warnings: tuple[str, ...]
+    """What speaks against the model, and what the track cannot tell."""
+    run: Run
+    """The motion from the release on."""
+    model: dict[str, np.ndarray]
+    """The track without noise, shape (points,) each."""
+
+    def lines(self) -> list[str]:
+        """Return each value of the scene with its error in words, angles in degrees."""
+        lines = []
+        for name in (*FITTABLE, "phi0", "scale"):
+            if name in self.values:
+                lines.append(self._line(name))
+        return lines
+
+    def _line(self, name: str) -> str:
+        """Return a value with its error in words, to two digits of the error."""
+        value = self.values[name]
+        error = self.errors[name]
+        unit = ""
+        if name in ("incline", "phi0"):
+            value = math.degrees(value)
+            error = math.degrees(error)
+            unit = "°"
+        digits = max(0, 1 - math.floor(math.log10(error)))
+        line = f"{value:.{digits}f}{unit} ± {error:.{digits}f}{unit}"
+        if name == "incline":
+            return f"incline, less rolling resistance: {line}"
+        if name == "damping":
+            of_law = f"± {_LAW_ERROR * value:.2g} of the law itself"
+            return f"damping over its law: {line}, and {of_law}"
+        return f"{name}: {line}"
+
+    @property
+    def title(self) -> str:
+        """Return what was fitted to what, in a line."""
+        parts = []
+        for channel, deviation in self.noise.items():
+            unit = "mm" if channel == "along" else "mrad"
+            parts.append(f"{1e3 * deviation:.2g} {unit} ({channel})")
+        points = f"{len(self.track.time)} points with a noise of {', '.join(parts)}"
+        return f"{in_words(self.scene)}; {points}"
+
+    def __str__(self) -> str:
+        notes = [f"note: {warning}" for warning in self.warnings]
+        return "\n".join([self.title, *self.lines(), *notes])
+
+    __repr__ = __str__
+
+    def plot(self) -> tuple[Any, ...]:
+        """Plot track and model, the rest in mm, and the speed, in a new figure; return the axes."""
+        from matplotlib import pyplot as plt
+
+        from mjbeer.output.plots import COLOURS, REFERENCE, SIMULATED, STYLE
+
+        time = self.track.time
+        rest = self.track.along - self.model["along"]
+        run_time = np.append(time[0], self.values["released"] + self.run.time)
+        run_speed = np.append(0.0, self.run.u_dot)  # it lies still until it is let go
+        with plt.rc_context(STYLE | {"lines.markersize": 3}):
+            figure = plt.figure(figsize=(8, 7.5), layout="constrained")
+            places, rests, speeds = figure.subplots(3, 1, sharex=True, height_ratios=(3, 2, 2))
+            places.plot(time, self.track.along, ".", color=COLOURS[1], label="track")
+            places.plot(time, self.model["along"], label="model", **SIMULATED)
+            places.set_ylabel("along [m]")
+            places.legend()
+            rests.plot(time, 1e3 * rest, ".", color=COLOURS[1])
+            rests.axhline(0, **REFERENCE)
+            rests.set_ylabel("track − model [mm]")
+            speeds.plot(run_time, run_speed, **SIMULATED)
+            speeds.set(xlabel="time [s]", ylabel="speed [m/s]", xlim=(time[0], time[-1]))
+            title = "\n".join(self.lines())
+            figure.suptitle(title, fontsize=STYLE["axes.labelsize"], x=0.02, ha="left")
+        return places, rests, speeds
+
+    def video(
+        self,
+        path: str | os.PathLike[str],
+        width: int = 1280,
+        height: int = 720,
+        speed: float = 1.0,
+    ) -> None:
+        """Write a film of `run` (.mp4), with the tracked places as marks.
+
+        The arguments and errors are those of `mjbeer.render`.
+        """
+        from mjbeer.drawing.film import MotionFilm
+        from mjbeer.drawing.style import FilmStyle
+        from mjbeer.drawing.video import write
+
+        time = self.track.time - self.values["released"]
+        rest = self.track.along - self.model["along"]
+        places = np.interp(time, self.run.time, self.run.u) + rest
+        style = FilmStyle(
+            "A filmed can and the fitted motion",
+            marks=("measured",),
+            measured=np.stack([time, places], axis=1),
+        )
+        film = MotionFilm(lambda: self.run, style, speed=speed)
+        write(film.plan(), require.path(path), width, height, 30)

@@ -1,0 +1,77 @@
+"""The diagram of the benchmark: what is drawn where."""
+
+import pathlib
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from mjbeer.output.plots import Picture
+from mjbeer.studies.benchmark import work_precision
+from mjbeer.studies.benchmark.other_tools import HEYOKA
+from mjbeer.studies.benchmark.points import SHIPPED, TOLERANCE, Benchmark, Point
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(scope="module")
+def stored() -> Benchmark:
+    return Benchmark.load(SHIPPED)
+
+
+def test_a_curve_is_of_run_times_in_milliseconds_and_of_errors(stored: Benchmark) -> None:
+    axes = Figure().subplots()
+    work_precision._draw(axes, stored.of("frozen"), work_precision._SMOOTH)
+    (line,) = (line for line in axes.lines if line.get_label() == "MuJoCo's RK4")
+    rk4 = [
+        point for point in stored.of("frozen") if (point.model, point.method) == ("reduced", "RK4")
+    ]
+    assert len(rk4) == 10
+    above_rounding = [(1e3 * point.time, point.error) for point in rk4 if point.error > 1e-13]
+    assert len(above_rounding) > 6
+    drawn = np.column_stack([line.get_xdata(), line.get_ydata()])
+    assert np.array_equal(drawn[: len(above_rounding)], above_rounding)
+
+
+def test_a_curve_ends_where_it_reaches_rounding() -> None:
+    """The first point at the floor is drawn there, and no slower one."""
+    errors = [1e-6, 1e-15, 1e-16]
+    found = [
+        Point("frozen", HEYOKA, "", TOLERANCE, error, error, error, times=[1.0]) for error in errors
+    ]
+    axes = Figure().subplots()
+    work_precision._draw(axes, found, work_precision._SMOOTH)
+    (line,) = axes.lines
+    assert list(line.get_ydata()) == [1e-6, 1e-13]
+
+
+def test_a_panel_has_few_curves() -> None:
+    for lines in (work_precision._SMOOTH, work_precision._CONTACT):
+        assert len(lines) <= 6
+
+
+def test_all_panels_have_the_same_axes(stored: Benchmark, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Three scenes, and contacts in the fourth panel."""
+    cases = ("sliding", "frozen", "pendulum")
+    some = replace(stored, points=[point for point in stored.points if point.case in cases])
+    drawn = []
+    monkeypatch.setattr(
+        work_precision, "name_below", lambda panels, _: drawn.extend(panels[0].figure.axes)
+    )
+    picture = Picture("some")
+    work_precision.draw(some, picture)
+    assert len(drawn) == 4
+    assert len({axes.get_xlim() for axes in drawn}) == 1
+    assert len({axes.get_ylim() for axes in drawn}) == 1
+    assert "in a can that rolls by friction" in picture.svg
+
+
+def test_a_single_scene_is_drawn_without_contacts(
+    stored: Benchmark, tmp_path: pathlib.Path
+) -> None:
+    one = replace(stored, points=stored.of("frozen"))
+    work_precision.draw(one, tmp_path / "picture")
+    text = (tmp_path / "picture.svg").read_text()
+    assert "in a can that rolls by friction" not in text
+    assert "without compiling" in text
