@@ -14,7 +14,6 @@ from mjbeer.model.mjcf_file import Parameters
 from mjbeer.model.setting import MUJOCO_INTEGRATORS, Setting
 from mjbeer.theory.can import Can
 from mjbeer.theory.scene import Scene, sliding
-from mjbeer.theory.segment import segment
 from mjbeer.theory.standing import Standing, standing
 
 

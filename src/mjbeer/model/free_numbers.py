@@ -10,8 +10,9 @@ import numpy as np
 
 from mjbeer.exceptions import UnsupportedError
 from mjbeer.model.mjcf_file import Parameters
-from mjbeer.theory.can import Can, segment
+from mjbeer.theory.can import Can
 from mjbeer.theory.scene import Scene
+from mjbeer.theory.segment import segment
 from mjbeer.theory.standing import Standing
 
 BREAKING = 0.02
