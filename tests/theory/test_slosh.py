@@ -3,6 +3,7 @@
 import functools
 import math
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -124,7 +125,7 @@ def test_a_load_of_liquid_swings_as_the_liquid_does(can: Can, fill: float) -> No
     """By the exact theory of a rigid load; its mass and its centre of mass stay."""
     load = Load.liquid(can, fill)
     solid = Load.segment(can.radius, can.length, fill)
-    assert (load.mass, load.offset, load.fill) == (solid.mass, solid.offset, fill)
+    assert replace(load, inertia=solid.inertia, sloshes_in=None) == solid
     scene = Scene(can, load, incline=0.0, gravity=GRAVITY)
     assert scene.frequency() == pytest.approx(by_section(fill, can), rel=FREQUENCY)
 
@@ -185,6 +186,19 @@ def test_shared_arrays_cannot_be_written_to() -> None:
         ),
         (lambda: Load.liquid(0.033, 0.5), r"can must be a Can, got 0\.033"),
         (lambda: Load.liquid(Can(), 0.5, 0.0), "load density must be greater than 0"),
+        (
+            lambda: Scene(METAL, Load.liquid(METAL), attachment="frozen"),
+            "a liquid that sloshes is not frozen: .* take Load.segment",
+        ),
+        (
+            lambda: Scene(METAL, Load.liquid(Can())),
+            r"depends on its can: it was made for Can\(.* mass=0\.0.*, got Can\(.* mass=0\.008",
+        ),
+        (
+            lambda: Scene(Can(), Load.liquid(Can()), gravity=0.0),
+            "without gravity a liquid does not slosh, got a gravity of 0",
+        ),
+        (lambda: Load(0.2, 0.01, 1e-5, sloshes_in=0.5), r"sloshes_in must be a Can, got 0\.5"),
         (
             lambda: Can.sheet_metal(thickness=0.033),
             r"thickness must be less than the radius of the can, 0\.033 ",

@@ -143,6 +143,11 @@ def lying_parameters(scene: Scene) -> Parameters:
         raise UnsupportedError(
             f"a can that is free in space has beer in it, got a load without a fill: {scene!r}"
         )
+    if liquid.sloshes_in is not None:
+        raise UnsupportedError(
+            "the inertia of a load of Load.liquid is that of slosh in a can that rolls: "
+            f"a can that is free in space takes Load.segment, got {scene!r}"
+        )
     if scene.drag > 0:
         raise UnsupportedError(
             f"a can that is free in space has no drag of the air, got {scene.drag!r} kg/m"

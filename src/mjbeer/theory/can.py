@@ -134,9 +134,17 @@ class Load:
 
     Only drawings and cans that are free in space (`mjbeer.attach`) depend on it.
     """
+    sloshes_in: Can | None = field(default=None, kw_only=True)
+    """The can for which `Load.liquid` made the load; None for a rigid load.
+
+    The inertia is that of slosh in this can while it rolls. Only a scene in which the load slides
+    in this very can, under gravity, takes it.
+    """
 
     def __post_init__(self) -> None:
         fill = None if self.fill is None else require.fill(self.fill)
+        if self.sloshes_in is not None:
+            require.instance("sloshes_in", self.sloshes_in, Can)
         require.set_fields(
             self,
             mass=require.within("load mass", self.mass, *require.MASS, "kg"),
@@ -206,7 +214,7 @@ class Load:
         mass_ratio = (solid.mass + can.effective_mass) / solid.mass
         axis_inertia = slosh.rolling(fill, mass_ratio).axis_inertia * solid.mass * can.radius**2
         inertia = axis_inertia - solid.mass * solid.offset**2
-        return replace(solid, inertia=inertia)
+        return replace(solid, inertia=inertia, sloshes_in=can)
 
     @classmethod
     def point(cls, mass: float, offset: float) -> "Load":
