@@ -197,22 +197,25 @@ class Load:
 
         Mass and centre of mass are those of `Load.segment`. The moment of inertia is such that on
         level ground a small swing has the frequency of the liquid's slowest mode. So it depends on
-        the can as well; it does not depend on gravity, without which nothing sloshes.
+        the can as well, and a scene takes the load in this `can` alone. It does not depend on
+        gravity, without which nothing sloshes.
 
-        The load is one mode, and the liquid has more: `slosh.rolling` has the share of each in the
-        energy. On an incline, the load rests at an angle to the normal of the ground. There it
+        The load moves as one mode does, and the liquid has more: `theory.slosh.rolling` has their
+        shares of the energy. Where the load rests at an angle to the normal of the ground, it
         swings more slowly than the liquid, most so in a can without mass: at 30 degrees by 1.3 % if
         the can is half full, and by 6 % at a fill of 0.25.
 
         `fill` is the depth divided by the diameter, `density` [kg/m^3] that of the liquid.
 
         Raises:
-          ParameterError: as `Load`, or if the fill is not between 0.01 and 0.99.
+          ParameterError: as `Load`, or if `can` is no `Can` or the fill is not between 0.01 and
+            0.99.
         """
         can = require.instance("can", can, Can)
         solid = cls.segment(can.radius, can.length, fill, density)
         mass_ratio = (solid.mass + can.effective_mass) / solid.mass
-        axis_inertia = slosh.rolling(fill, mass_ratio).axis_inertia * solid.mass * can.radius**2
+        modes = slosh.rolling(fill, mass_ratio)
+        axis_inertia = modes.axis_inertia * solid.mass * can.radius**2
         inertia = axis_inertia - solid.mass * solid.offset**2
         return replace(solid, inertia=inertia, sloshes_in=can)
 

@@ -5,57 +5,68 @@ y points upwards, and the surface reaches from x = -c to x = c. The can has the 
 length l, the liquid the density rho and the mass m; b is the distance of its centre of mass from
 the axis. The modes in which the surface is even in x move no mass sideways, and are left out.
 
-**The surface.** All pressures on the wall point at the axis. So it does not matter how the can
-turns, only how far its axis moves: by u. Relative to the can, the liquid has the potential phi and
-its surface the elevation eta. On the surface
+**The surface.** The wall is a circle, so that the pressure on every part of it points at the axis.
+It does not matter how the can turns, only how far its axis has moved: by u. In the frame that moves
+with the axis and does not turn, the liquid has the velocity potential phi, and its surface rises by
+eta. On the surface, with subscripts t for derivatives by time,
 
     eta_t = N phi,    phi_t = -g eta - u_tt x.
 
-The first says that the surface moves with the liquid: the operator N gives d phi/dy for the phi on
-the surface, as no liquid passes the wall. The second is Bernoulli's equation where the pressure is
-0, in the frame of a can that accelerates.
+The first equation says that the surface moves with the liquid, whose velocity is d phi/dy upwards.
+No liquid passes the wall, so that the values of phi on the surface determine phi everywhere; the
+operator N turns them into d phi/dy on the surface. The second equation is Bernoulli's where the
+pressure is 0, in a frame that accelerates.
 
-**The axis.** The elevation moves the liquid's centre of mass sideways; its first moment is m u plus
-rho l times the integral of x eta. The pressures have no moment about the axis, so that a can that
-rolls on level ground resists as if it had the mass m_can + I_can/a^2. With M_e = m + m_can +
-I_can/a^2, eq. (46),
+**The axis.** The mass of the liquid times the position of its centre of mass along the ground is
+m u + rho l integral(x eta). The pressures have no moment about the axis, so that a can that rolls
+on level ground resists as if it had the mass m_can + I_can/a^2. With M_e = m + m_can + I_can/a^2 of
+eq. (46), no force along the ground is left but the inertias:
 
-    M_e u_tt = -rho l (integral of x eta)_tt.
+    M_e u_tt = -rho l integral(x eta_tt).
 
 **Both together.** Let e_0, e_1, ... be the odd polynomials of x that are orthonormal on the
-surface, and let the vector eta now have the coefficients of the elevation. A flat surface that is
-tilted is e_0 alone, as x = sqrt(2 c^3/3) e_0. The integral of x^2 over the surface is 2 c^3/3. By
-eq. (35) it is b times the area of the cross-section. So
+surface, and let eta now be the vector of the coefficients of the elevation. The integral of x^2
+over the surface is 2 c^3/3, so that x = sqrt(2 c^3/3) e_0: a flat surface that is tilted is e_0
+alone. By eq. (35), 2 c^3/3 is also b times the area of the cross-section, m b/(rho l). Without u
+and phi the equations then are
 
     (N^-1 - k e_0 e_0^T) eta_tt = -g eta,    k = m b/M_e.
 
-The eigenvalues of the matrix in brackets are the lengths L_n = g/omega_n^2 of the simple pendulums
-that swing as fast as the modes. In a can that is held, k = 0. If a flat tilt is let go, the mode
-with the unit eigenvector v has the share (e_0 . v)^2 of the energy.
+The eigenvalues of the matrix in brackets are L_n = g/omega_n^2: the lengths of the simple pendulums
+that swing as fast as the modes. In a can that is held, k = 0. The energy of a surface at rest is
+proportional to the square of the vector eta. So if a flat tilt is let go, the mode with the unit
+eigenvector v has the share (e_0 . v)^2 of the energy.
 
-**Pendulums.** In a can that is held, mode n acts like a pendulum on the axis with the length L_n
-and the mass m_n = m b (e_0 . v_n)^2/L_n. The rest of the liquid acts like a mass on the axis that
-does not turn. The shares add up to 1, hence the sum of m_n L_n is m b: a liquid that tilts has its
-centre of mass where the lump has it.
+**Pendulums.** Let v_n be the eigenvectors of a can that is held, and L_n its lengths. On a can
+whose axis moves along the ground in any way, the liquid acts like pendulums on the axis, one for
+each n, with the lengths L_n and the masses m_n = m b (e_0 . v_n)^2/L_n, and like a mass on the axis
+that does not turn, which is the rest of m. The shares add up to 1, and so the m_n L_n add up to
+m b: a liquid that tilts has its centre of mass where the rigid load has it.
 
 **The equivalent load.** A rigid load with the same m and b, which slides in the can without
-friction, swings like a pendulum of length I_axis/(m b) - k, eq. (10). It swings as fast as the
-slowest mode, with the length L_1, if its moment of inertia about the axis is
+friction, swings like a simple pendulum of length I_axis/(m b) - k, eq. (10). If it is to swing as
+fast as the slowest mode of the rolling can, with the length L_1, its moment of inertia about the
+axis must be
 
     I_axis = m b (L_1 + k).
 
 **The operator N.** Let beta be half of the angle that the surface subtends at the axis, and let y
 be 0 on the surface. Then x + i y = c tanh((tau + i sigma)/2) maps the liquid to the endless strip
-between the surface, sigma = 0, and the wall, sigma = -beta. In the strip, a potential that is
-sin(kappa tau) on the surface has there the derivative kappa tanh(kappa beta) sin(kappa tau) by
-sigma, since it has none at the wall. With Fourier's integral, and
+between the surface, sigma = 0, and the wall, sigma = -beta. There
 
-    D_j(kappa) = integral of cos(kappa tau) d e_j(c tanh(tau/2))/d tau d tau    over all tau,
-    N_ij = (1/pi) integral of tanh(kappa beta)/kappa D_i D_j d kappa            from 0 to infinity.
+    sin(kappa tau) cosh(kappa (sigma + beta))/cosh(kappa beta)
 
-The method is Ritz's: the lengths come from below as the number of polynomials grows.
+is a potential without flux through the wall. On the surface it is sin(kappa tau), and its
+derivative by sigma is kappa tanh(kappa beta) times that. Odd functions on the surface are Fourier
+integrals of such sines. With e_j as a function of tau this gives
 
-Every length in this file is divided by a, every mass by m.
+    D_j(kappa) = integral of cos(kappa tau) (d e_j/d tau) d tau             over all tau,
+    N_ij = (1/pi) integral of tanh(kappa beta)/kappa D_i D_j d kappa        from 0 to infinity.
+
+With finitely many polynomials this is Ritz's method: the lengths grow towards the exact ones as
+polynomials are added.
+
+In the code, every length is divided by a and every mass by m, unless a unit is given.
 
 References:
   D. V. Evans and C. M. Linton, "Sloshing frequencies", Q. J. Mech. Appl. Math. 46, 71 (1993): the
@@ -89,12 +100,12 @@ Up to a fill of a half, the lengths of the first ten modes have relative errors 
 fuller can the corner of the liquid at the wall is obtuse, and the velocity there is not smooth: at
 0.95 the first length errs by 3e-10 and the tenth by 1e-8, at 0.99 by 1.3e-9 and 3e-8."""
 STEP = 1 / 12
-"""Distance of the kappa at which the integrand is taken.
+"""Distance between the kappa of the sum that stands for the integral.
 
-It is even and smooth, and its nearest singularity is at least 1/2 off the real axis. So the sum
-errs by exp(-pi/STEP), which is 4e-17, if kappa is not limited."""
+The integrand is even and smooth, and its nearest singularity is at least 1/2 off the real axis. So
+a sum without end errs by exp(-pi/STEP), which is 4e-17."""
 HIGHEST = 70.0
-"""Largest kappa: beyond it the integrand of so many polynomials is below 1e-22."""
+"""Largest kappa of the sum: beyond it the integrand of so many polynomials is below 1e-22."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,7 +139,7 @@ class Modes:
 
 @dataclass(frozen=True, eq=False)
 class HeldModes(Modes):
-    """The modes in a can that is held."""
+    """The modes in a can that is held; they give the pendulums for any motion of the can."""
 
     @property
     def masses(self) -> np.ndarray:
@@ -141,7 +152,8 @@ class RollingModes(Modes):
     """The modes in a can that rolls on level ground."""
 
     arm: float
-    """k = m b/M_e [a], 0 in a can that is held."""
+    """k = m b/M_e [a]: how far the axis moves if a flat surface tilts by 1 rad; 0 if M_e is
+    infinite."""
 
     @property
     def axis_inertia(self) -> float:
@@ -183,10 +195,12 @@ def rolling(fill: float, mass_ratio: float) -> RollingModes:
         raise ParameterError(f"mass_ratio must be 1 or greater (infinity is allowed), got {got}")
     modes = held(fill)
     arm = modes.offset / ratio
-    # The components of e_0 along the modes of the can that is held; their signs are free.
+    # In the basis of the eigenvectors of the can that is held. Their signs are free, and here such
+    # that e_0 has no negative component.
     flat = np.sqrt(modes.energy_shares)
     lengths, vectors = np.linalg.eigh(np.diag(modes.lengths) - arm * np.outer(flat, flat))
     shares = (flat @ vectors) ** 2
+    # The eigenvalues increase; the slowest mode has the largest.
     return RollingModes(
         modes.offset,
         lengths=_constant(lengths[::-1]),
@@ -200,8 +214,9 @@ def _held(fill: float) -> HeldModes:
     shape = segment(fill)
     half_chord = math.sin(shape.half_angle)
     kappa, transforms = _transforms()
-    # The polynomials are orthonormal for x/c, and so for x after division by sqrt(c).
-    weights = STEP / math.pi * np.tanh(kappa * shape.half_angle) / (kappa * half_chord)
+    weights = STEP / math.pi * np.tanh(kappa * shape.half_angle) / kappa
+    # Polynomials of x/c that are orthonormal by x/c are so by x once divided by sqrt(c).
+    weights /= half_chord
     flux = (transforms * weights) @ transforms.T
     inverse_lengths, vectors = np.linalg.eigh(flux)
     return HeldModes(
