@@ -31,8 +31,8 @@ BOB_SHARE = 0.01
 
 The bob is heavier by as much and nearer to the axis, so that the motion stays the pendulum's."""
 AMPLITUDE = 1e-4
-"""Tilt at the start [rad]. With ten times as much, the swing of a shallow liquid in a massless can
-is late by 3e-3 of a radian of its phase after two seconds, as no sine is."""
+"""Tilt at the start [rad]. With ten times as much, a shallow liquid in a massless can is so far
+from linear that its swing is late by 3e-3 of a radian after two seconds."""
 TIMESTEP = 5e-4
 DURATION = 2.0
 

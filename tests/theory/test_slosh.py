@@ -130,6 +130,22 @@ def test_a_load_of_liquid_swings_as_the_liquid_does(can: Can, fill: float) -> No
     assert scene.frequency() == pytest.approx(by_section(fill, can), rel=FREQUENCY)
 
 
+def test_the_slowest_mode_is_the_motion_but_in_a_shallow_massless_can() -> None:
+    """As the docstring of `Load.liquid` and the page of the physics say."""
+    for fill in np.arange(1, 31) / 100:
+        shares = slosh.rolling(fill, 1.0).energy_shares
+        assert shares[0] < shares.max()
+    modes = slosh.rolling(0.1, 1.0)
+    assert modes.energy_shares[2] == pytest.approx(0.96, abs=0.005)
+    ice = Scene(Can(), Load.segment(fill=0.1), 0.0, gravity=GRAVITY).frequency()
+    frequencies = modes.frequencies(Can().radius, GRAVITY)
+    assert frequencies[[0, 2]] / ice == pytest.approx([0.68, 1.08], abs=0.005)
+    for fill in np.arange(1, 100) / 100:
+        liquid = Load.segment(METAL.radius, METAL.length, fill)
+        modes = slosh.rolling(fill, 1 + METAL.effective_mass / liquid.mass)
+        assert modes.energy_shares[0] > 0.85
+
+
 def test_a_half_full_can_of_liquid_swings_half_as_fast_again_as_one_of_ice() -> None:
     liquid = Scene(Can(), Load.liquid(Can()), 0.0)
     ice = Scene(Can(), Load.segment(), 0.0)

@@ -200,10 +200,12 @@ class Load:
         the can as well, and a scene takes the load in this `can` alone. It does not depend on
         gravity, without which nothing sloshes.
 
-        The load moves as one mode does, and the liquid has more: `theory.slosh.rolling` has their
-        shares of the energy. Where the load rests at an angle to the normal of the ground, it
-        swings more slowly than the liquid, most so in a can without mass: at 30 degrees by 1.3 % if
-        the can is half full, and by 6 % at a fill of 0.25.
+        The load moves as the slowest mode does, and the liquid has more modes, whose shares of the
+        energy are in `theory.slosh.rolling`. In a can without mass that is filled to less than 0.3,
+        a flat tilt that is let go has more of a faster mode than of this one. Where the load rests
+        at an angle to the normal of the ground, it swings more slowly than the liquid, most so in a
+        can without mass: at 30 degrees by 1.3 % if the can is half full, and by 6 % at a fill of
+        0.25.
 
         `fill` is the depth divided by the diameter, `density` [kg/m^3] that of the liquid.
 
