@@ -5,10 +5,10 @@ y points upwards, and the surface reaches from x = -c to x = c. The can has the 
 length l, the liquid the density rho and the mass m; b is the distance of its centre of mass from
 the axis. The modes in which the surface is even in x move no mass sideways, and are left out.
 
-**The surface.** The wall is a circle, so that the pressure on every part of it points at the axis.
-It does not matter how the can turns, only how far its axis has moved: by u. In the frame that moves
-with the axis and does not turn, the liquid has the velocity potential phi, and its surface rises by
-eta. On the surface, with subscripts t for derivatives by time,
+**The surface.** The wall is a circle, so that the pressure on any part of it acts along a line
+through the axis. It does not matter how the can turns, only how far its axis has moved: by u. In
+the frame that moves with the axis and does not turn, the liquid has the velocity potential phi, and
+its surface rises by eta. On the surface, with subscripts t for derivatives by time,
 
     eta_t = N phi,    phi_t = -g eta - u_tt x.
 
@@ -20,7 +20,7 @@ pressure is 0, in a frame that accelerates.
 **The axis.** The mass of the liquid times the position of its centre of mass along the ground is
 m u + rho l integral(x eta). The pressures have no moment about the axis, so that a can that rolls
 on level ground resists as if it had the mass m_can + I_can/a^2. With M_e = m + m_can + I_can/a^2 of
-eq. (46), no force along the ground is left but the inertias:
+eq. (46), and with no weight along the ground,
 
     M_e u_tt = -rho l integral(x eta_tt).
 
