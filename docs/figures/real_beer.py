@@ -16,9 +16,10 @@ from scipy.optimize import brentq
 from mjbeer.drawing.words import in_degrees
 from mjbeer.output.plots import COLOURS, GREY, REFERENCE, THEORY, chart, name_below, note
 from mjbeer.simulation.simulate import simulate
-from mjbeer.theory.can import THICKNESS, Can, Damping, segment
+from mjbeer.theory.can import THICKNESS, Can, Damping
 from mjbeer.theory.liquid import LIQUIDS, NAMES, centrifugal_ratio, liquid_in
 from mjbeer.theory.scene import GRAVITY, INCLINE, Scene, frozen, sliding
+from mjbeer.theory.segment import segment
 from mjbeer.theory.trajectory import Trajectory, exact
 
 CAN = Can.sheet_metal(thickness=THICKNESS * 0.013 / Can.sheet_metal().mass)

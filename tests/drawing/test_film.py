@@ -17,7 +17,8 @@ from mjbeer.drawing.race import Race, Runner
 from mjbeer.drawing.scene import Display, Painter, coordinates
 from mjbeer.drawing.sheet import Sheet
 from mjbeer.drawing.style import FilmStyle
-from mjbeer.theory.can import RADIUS, segment
+from mjbeer.theory.can import RADIUS
+from mjbeer.theory.segment import segment
 
 pytestmark = pytest.mark.slow
 

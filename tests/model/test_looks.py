@@ -10,7 +10,8 @@ from mjbeer import Can, Load, Scene, frozen, hoop, pendulum, sliding
 from mjbeer.model import looks
 from mjbeer.model.build import rolling_spec
 from mjbeer.model.setting import ROLLINGS, Setting, mjcf_folder
-from mjbeer.theory.can import LENGTH, RADIUS, segment
+from mjbeer.theory.can import LENGTH, RADIUS
+from mjbeer.theory.segment import segment
 from tests.support.scenes import METAL
 
 TEMPLATES = {

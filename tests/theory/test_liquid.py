@@ -10,9 +10,9 @@ from scipy.integrate import solve_bvp
 from scipy.optimize import brentq
 
 from mjbeer import LiquidWarning, exact, liquid, sliding
-from mjbeer.theory.can import segment
 from mjbeer.theory.equations import slip_rate_of
 from mjbeer.theory.liquid import ENDS, FILM_LOAD, WALL, liquid_in, lump_warning
+from mjbeer.theory.segment import segment
 from tests.support.scenes import METAL
 
 # The coefficients are rounded to four and five digits.

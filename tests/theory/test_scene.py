@@ -14,7 +14,7 @@ from mpmath import MPContext
 import mjbeer
 from mjbeer import Can, Damping, Load, Scene, exact, liquid, sliding
 from mjbeer.exceptions import ParameterError
-from mjbeer.theory.can import segment
+from mjbeer.theory.segment import segment
 
 BEER = Load(0.2, 0.01, 1e-5)
 
@@ -157,7 +157,7 @@ def test_a_point_frozen_to_the_rim_holds_on_any_incline() -> None:
         (
             Scene(Can(), BEER, damping=Damping(1e-3), attachment="sliding"),
             "Scene(can=Can(radius=0.033, length=0.12, mass=0.0, inertia=0.0), "
-            "load=Load(mass=0.2, offset=0.01, inertia=1e-05, fill=None), "
+            "load=Load(mass=0.2, offset=0.01, inertia=1e-05, fill=None, sloshes_in=None), "
             "damping=Damping(linear=0.001, quadratic=0.0, cubic=0.0))",
         ),
     ],

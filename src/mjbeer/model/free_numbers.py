@@ -10,8 +10,9 @@ import numpy as np
 
 from mjbeer.exceptions import UnsupportedError
 from mjbeer.model.mjcf_file import Parameters
-from mjbeer.theory.can import Can, segment
+from mjbeer.theory.can import Can
 from mjbeer.theory.scene import Scene
+from mjbeer.theory.segment import segment
 from mjbeer.theory.standing import Standing
 
 BREAKING = 0.02
@@ -141,6 +142,11 @@ def lying_parameters(scene: Scene) -> Parameters:
     if liquid.fill is None:
         raise UnsupportedError(
             f"a can that is free in space has beer in it, got a load without a fill: {scene!r}"
+        )
+    if liquid.sloshes_in is not None:
+        raise UnsupportedError(
+            "the inertia of a load of Load.liquid is that of slosh in a can that rolls: "
+            f"a can that is free in space takes Load.segment, got {scene!r}"
         )
     if scene.drag > 0:
         raise UnsupportedError(

@@ -16,8 +16,9 @@ import numpy as np
 
 from mjbeer.exceptions import TemplateError
 from mjbeer.model import mjcf_file
-from mjbeer.theory.can import LENGTH, RADIUS, Can, segment
+from mjbeer.theory.can import LENGTH, RADIUS, Can
 from mjbeer.theory.scene import Scene
+from mjbeer.theory.segment import segment
 from mjbeer.theory.standing import Standing
 
 SHARED_FILES = ("assets.xml", "scene.xml")

@@ -57,8 +57,9 @@ class Scene:
 
     Raises:
       ParameterError: if a parameter is outside the domain, the load is outside the can, a frozen
-        load is damped, or nothing has inertia at phi = 0. Methods raise it if what they return has
-        a meaning only with damping or drag, or only without them.
+        load is damped, or nothing has inertia at phi = 0; if a load of `Load.liquid` is frozen, in
+        another can, or without gravity. Methods raise it if what they return has a meaning only
+        with damping or drag, or only without them.
       NoEquilibriumError: methods that need a load at rest raise it if the incline is too steep or
         nothing restores the load.
     """
@@ -100,6 +101,8 @@ class Scene:
             drag=require.non_negative("drag", self.drag, "kg/m"),
         )
         self._require_load_in_domain()
+        if self.load.sloshes_in is not None:
+            self._require_slosh(self.load.sloshes_in)
         if self.dissipates:
             self._require_dissipation_in_domain()
 
@@ -125,6 +128,21 @@ class Scene:
                 "next to nothing resists rotation at phi = 0: a point load needs an offset and "
                 f"a can with mass, got {load!r} and {can!r}"
             )
+
+    def _require_slosh(self, made_for: Can) -> None:
+        """Check that a load of `Load.liquid` sloshes here as in the can that it was made for."""
+        if self.attachment == "frozen":
+            raise ParameterError(
+                "a liquid that sloshes is not frozen: with attachment='frozen' take Load.segment, "
+                f"which has the inertia of ice, got {self.load!r}"
+            )
+        if self.can != made_for:
+            raise ParameterError(
+                "the inertia of a load of Load.liquid depends on its can: "
+                f"it was made for {made_for!r}, got {self.can!r}"
+            )
+        if self.gravity == 0:
+            raise ParameterError("without gravity a liquid does not slosh, got a gravity of 0")
 
     def _require_dissipation_in_domain(self) -> None:
         """Check that the load slides, and that damping and drag brake at rates in the domain."""
