@@ -15,6 +15,7 @@ import numpy as np
 
 from mjbeer.drawing.camera import CAMERAS
 from mjbeer.exceptions import ParameterError
+from mjbeer.model.looks import LOOKS
 from mjbeer.model.setting import MJBEER_INTEGRATORS, MUJOCO_INTEGRATORS, ROLLINGS, Setting
 from mjbeer.output.terminal import say
 from mjbeer.studies.benchmark.points import CASES
@@ -129,6 +130,7 @@ OPTIONS = {  # of each command; if a scene comes first, these come after that of
     "export": (
         *_MODEL,
         Option("--output", 'MJCF file to write (.xml); its keyframe "start" is the start', "can.xml", Path),
+        Option("--looks", "plain, in a file of 10 kB, or full, as mjbeer draws it", "plain", LOOKS),
         Option("--portable", "write MJCF that other tools load too: docs/portability.md has each tool's error", False),
     ),
     "fit": (

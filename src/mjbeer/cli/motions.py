@@ -171,7 +171,7 @@ def view(given: Namespace) -> None:
         how = {"rolling": "equality"} | how
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "scene.xml"
-        export(thing, path, **how)
+        export(thing, path, **how, looks="full")
         model = mujoco.MjModel.from_xml_path(str(path))
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, model.key(START).id)
@@ -190,7 +190,14 @@ def export(given: Namespace) -> None:
     """Write a scene with its start as one MJCF file that MuJoCo 4 loads without mjbeer."""
     from mjbeer.model.export import export
 
-    export(scene(given), given.output, **start(given), **steps(given), portable=given.portable)
+    export(
+        scene(given),
+        given.output,
+        **start(given),
+        **steps(given),
+        portable=given.portable,
+        looks=given.looks,
+    )
     keyframe = 'its start is a keyframe: mujoco.mj_resetDataKeyframe(model, data, model.key("start").id)'
     say(f"wrote {given.output}; {keyframe}")
 
