@@ -35,9 +35,10 @@ model's, and the motion after a second is within 1e-10 rad of its motion: with R
 only within 1e-8 rad of the truth."""
 _DRAWN_DIGITS = 6
 """Digits of what is only drawn, which MuJoCo keeps in single precision."""
-_DRAWN_ATTRIBUTES = """
-    rgba rgb1 rgb2 markrgb random ambient diffuse specular shininess emission texrepeat vertex texcoord
-""".split()
+_DRAWN_ATTRIBUTES = (
+    *("rgba", "rgb1", "rgb2", "markrgb", "random", "ambient", "diffuse", "specular"),
+    *("shininess", "emission", "texrepeat", "vertex", "texcoord"),
+)
 """Attributes of MJCF that only say how something looks."""
 _NUMBER = re.compile(r"-?\d+(\.\d*)?(e[-+]?\d+)?")
 
