@@ -25,8 +25,8 @@ from mjbeer.model import export as export_module
 from mjbeer.model.build import add_start, build, rolling_spec
 from mjbeer.model.export import export
 from mjbeer.model.joints import initial_state
-from mjbeer.model.looks import LOOKS
 from mjbeer.model.setting import (
+    LOOKS,
     MJBEER_INTEGRATORS,
     MUJOCO_INTEGRATORS,
     ROLLINGS,

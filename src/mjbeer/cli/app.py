@@ -23,8 +23,8 @@ _DESCRIPTION = """The rolling half-full beer can as a MuJoCo model that can be t
 # The functions that run commands, whose docstrings are their help; one may return an exit status.
 COMMANDS = {name: getattr(motions, name, None) or getattr(studies, name) for name in OPTIONS}
 OF_SCENES: dict[str, dict[str, Callable[..., Any]]] = {  # the scenes of which one must follow a command
-    **dict.fromkeys(("simulate", "render", "fit", "sweep"), SCENES),
-    **dict.fromkeys(("view", "export"), SCENES | STANDING),
+    **dict.fromkeys(("simulate", "fit", "sweep"), SCENES),
+    **dict.fromkeys(("render", "view", "export"), SCENES | STANDING),
 }
 
 

@@ -15,8 +15,7 @@ import numpy as np
 
 from mjbeer.drawing.camera import CAMERAS
 from mjbeer.exceptions import ParameterError
-from mjbeer.model.looks import LOOKS
-from mjbeer.model.setting import MJBEER_INTEGRATORS, MUJOCO_INTEGRATORS, ROLLINGS, Setting
+from mjbeer.model.setting import LOOKS, MJBEER_INTEGRATORS, MUJOCO_INTEGRATORS, ROLLINGS, Setting
 from mjbeer.output.terminal import say
 from mjbeer.studies.benchmark.points import CASES
 from mjbeer.theory.can import LENGTH, RADIUS, Can
@@ -167,6 +166,10 @@ OPTIONS = {  # of each command; if a scene comes first, these come after that of
 }
 
 
+_ROLLS = ("--rolling", "--friction", "--tolerance", "--camera")
+"""Options that a can that stands does not have: they are those of a can that rolls."""
+
+
 def of_scene(name: str, command: str) -> list[Option]:
     """Return the options of a scene and of its start, and then those of a command; a sweep takes several numbers."""
     number, degrees = (numbers, angles) if command == "sweep" else (float, angle)
@@ -184,7 +187,7 @@ def of_scene(name: str, command: str) -> list[Option]:
         if each in given
     ]
     if name == "standing":
-        return [*own, *(each for each in OPTIONS[command] if each.name not in ("--rolling", "--friction"))]
+        return [*own, *(each for each in OPTIONS[command] if each.name not in _ROLLS)]
     if command != "fit":
         own.append(Option("--phi0", "initial phi [degrees]: 0 with the load nearest to the incline", "60", degrees))
         own.append(Option("--phi-dot0", "initial rate of change of phi [degrees/s]", "0", degrees))

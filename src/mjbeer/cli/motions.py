@@ -144,12 +144,30 @@ def simulate(given: Namespace) -> None:
 
 
 def render(given: Namespace) -> None:
-    """Simulate a scene and draw it as a video (MP4)."""
+    """Simulate a scene and draw it as a video (MP4).
+
+    A can that stands is held, and its liquid is let go with a surface 0.1 R high at the wall.
+    """
+    if given.scene == "standing":
+        _render_standing(given)
+        return
     from mjbeer.drawing.video import render
 
     trajectory = trajectory_of(given)
     _warn(Summary(trajectory, given.friction))
     render(trajectory, given.output, given.width, given.height, speed=given.speed, camera=given.camera)
+    say(f"wrote {given.output}")
+
+
+def _render_standing(given: Namespace) -> None:
+    """Draw how the liquid of a standing can sloshes."""
+    from mjbeer.drawing.standing_film import StandingFilm, render_standing
+
+    can = scene(given)
+    if can.moving_modes == 0:
+        say("note: nothing moves in this film, because the liquid is solid", "yellow")
+    film = StandingFilm(can, given.duration, **steps(given), speed=given.speed)
+    render_standing(film, given.output, given.width, given.height)
     say(f"wrote {given.output}")
 
 

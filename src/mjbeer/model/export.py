@@ -12,12 +12,14 @@ from mjbeer.exceptions import ParameterError, TemplateError, UnsupportedError
 from mjbeer.model import mjcf_file
 from mjbeer.model.build import START, add_start, can_spec
 from mjbeer.model.check import check_drawn, check_file
-from mjbeer.model.looks import LOOKS, Looks, simplify
+from mjbeer.model.looks import simplify
 from mjbeer.model.mujoco_library import library
 from mjbeer.model.setting import (
     FRICTION,
+    LOOKS,
     MUJOCO_INTEGRATORS,
     Integrator,
+    Looks,
     MujocoIntegrator,
     Rolling,
     Setting,

@@ -10,7 +10,7 @@ import math
 import pathlib
 import xml.etree.ElementTree as ET
 from collections.abc import Iterable
-from typing import Any, Literal, NamedTuple, get_args
+from typing import Any, NamedTuple
 
 import mujoco
 import numpy as np
@@ -21,9 +21,6 @@ from mjbeer.theory.can import LENGTH, RADIUS, Can, segment
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.standing import Standing
 
-Looks = Literal["plain", "full"]
-LOOKS: tuple[Looks, ...] = get_args(Looks)
-"""How an exported can may look: in a few geoms, or with all its meshes."""
 SHARED_FILES = ("assets.xml", "scene.xml")
 """The files that all cans include: meshes and materials, and what stands around a can."""
 VISUAL_GROUP = 2
