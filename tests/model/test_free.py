@@ -100,6 +100,11 @@ def test_a_can_that_does_not_stand_has_no_rise() -> None:
     model = build(frozen())
     with pytest.raises(ParameterError, match="no standing can under the prefix ''"):
         wall_rise(model, mujoco.MjData(model), "")
+    stands = build(standing())
+    with pytest.raises(
+        ParameterError, match="must be those of the model, of 11, got 1 coordinates"
+    ):
+        wall_rise(stands, mujoco.MjData(model), "")
 
 
 @pytest.mark.filterwarnings("ignore::mjbeer.LiquidWarning")

@@ -18,6 +18,7 @@ from mjbeer.drawing.overlay import HEIGHT, STRIP, head
 from mjbeer.drawing.sheet import Sheet
 from mjbeer.drawing.strip import Chart, Line, Strip
 from mjbeer.exceptions import ParameterError, RenderingError
+from mjbeer.model.attach import surface_slope
 from mjbeer.model.build import build
 from mjbeer.model.setting import MujocoIntegrator
 from mjbeer.output import terminal
@@ -58,17 +59,8 @@ def slosh(can: Standing, model: mujoco.MjModel, duration: float) -> Slosh:
         if sample > 0:
             mujoco.mj_step(model, data)
         qpos[sample] = data.qpos
-        rise[sample] = _rise_towards_x(can, data)
+        rise[sample] = surface_slope(model, data, "")[0]
     return Slosh(model.opt.timestep * np.arange(count + 1), qpos, rise)
-
-
-def _rise_towards_x(can: Standing, data: mujoco.MjData) -> float:
-    """Return how high the surface rises at the wall towards +x, in radii: -sum(2/(xi^2 - 1) x)."""
-    total = 0.0
-    for mode, elevation in enumerate(can.elevations(), start=1):
-        w, x, y, z = data.joint(f"slosh{mode}").qpos
-        total -= elevation * 2 * (x * z + w * y)
-    return total
 
 
 @dataclass(frozen=True)

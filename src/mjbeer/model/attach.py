@@ -185,16 +185,12 @@ def wall_rise(model: mujoco.MjModel, data: mujoco.MjData, prefix: str = "can-") 
 
     It is the largest rise around the wall, by all modes that move; a solid liquid has 0. The can is
     the one that was attached under the `prefix`, or, with an empty one, that of a model of a
-    standing can. The value is that of `data.qpos`, also right after `mj_step`, and takes
+    standing can. The value is that of `data.qpos`, also right after `mj_step`, and takes tens of
     microseconds: ask in every step. Linear theory is quantitative up to 0.1, and gives a picture up
     to 0.3. What rises beyond is no liquid any more, and nothing else says so.
 
-    Every mode varies with the cosine of the angle around the axis, so that their sum does so too:
-    with the sines (x, y) of a pendulum's tilt in the frame of the can the rise is the length of the
-    vector -sum(2/(xi^2 - 1) (x, y)).
-
     Raises:
-      ParameterError: if the model has no such can.
+      ParameterError: if the model has no such can, or the data are those of another model.
     """
     require.instance("model", model, mujoco.MjModel)
     require.instance("data", data, mujoco.MjData)
@@ -203,6 +199,21 @@ def wall_rise(model: mujoco.MjModel, data: mujoco.MjData, prefix: str = "can-") 
         raise ParameterError(
             f"the model has no standing can under the prefix {require.format_value(prefix)}"
         )
+    if len(data.qpos) != model.nq:
+        coordinates = f"{len(data.qpos)} coordinates"
+        raise ParameterError(
+            f"the data must be those of the model, of {model.nq}, got {coordinates}"
+        )
+    return float(np.hypot(*surface_slope(model, data, prefix)))
+
+
+def surface_slope(model: mujoco.MjModel, data: mujoco.MjData, prefix: str) -> np.ndarray:
+    """Return how high the liquid of a standing can rises at the walls towards +x and +y, in radii.
+
+    Every mode varies with the cosine of the angle around the axis, and so does their sum: the two
+    numbers are the vector -sum(2/(xi^2 - 1) (x, y)) with the sines (x, y) of the pendulums' tilts in
+    the frame of the can, and its length is the largest rise.
+    """
     joint = mujoco.mjtObj.mjOBJ_JOINT
     names = [f"{prefix}{slosh}" for slosh in _SLOSHES]
     addresses = [
@@ -210,14 +221,14 @@ def wall_rise(model: mujoco.MjModel, data: mujoco.MjData, prefix: str = "can-") 
         for name in names
         if _has(model, joint, name)
     ]
-    rise = np.zeros(2)
+    slope = np.zeros(2)
     for elevation, first in zip(mode_elevations(len(addresses)), addresses, strict=True):
         turn = data.qpos[first : first + 4].copy()
         mujoco.mju_normalize4(turn)
         w, x, y, z = turn
         upper_end = np.array([2 * (x * z + w * y), 2 * (y * z - w * x)])
-        rise -= elevation * upper_end
-    return float(np.hypot(*rise))
+        slope -= elevation * upper_end
+    return slope
 
 
 def _require_same_can(
