@@ -17,8 +17,10 @@ FRICTION = [0.8, 0.004, 1e-4]  # of rubber on metal; the second resists a twist 
 TIP = 0.012  # radius of a fingertip, which is round [m]
 OPEN = 0.03  # way of a finger from its start to the wall [m]
 CLOSED = 0.5  # time at which the fingers have closed [s]
-LIFT, LIFTED = 0.15, 1.3  # height [m], and when it is reached [s]
-CARRY, CARRIED = 0.30, 2.8  # distance [m], and when it is reached [s]
+LIFT = 0.15  # how high the can is lifted [m]
+LIFTED = 1.3  # time at which it is there [s]
+CARRY = 0.30  # how far it is carried then [m]
+CARRIED = 2.8  # time at which it is there [s]
 END = 4.0  # [s]
 STEEL = [0.32, 0.36, 0.42, 1]
 
@@ -29,7 +31,7 @@ class Grasp(NamedTuple):
     time: np.ndarray
     """[s]."""
     slip: np.ndarray
-    """How far the can has moved in the hand since it was lifted off [m]."""
+    """How far the can is in the hand from where it was when the fingers had closed [m]."""
     tilt: np.ndarray
     """Angle between the can's axis and the vertical [rad]."""
     used: np.ndarray

@@ -58,8 +58,8 @@ def test_cans_that_are_carried_are_felt_as_theory_says(tmp_path: pathlib.Path) -
 @pytest.mark.slow
 def test_two_fingers_carry_a_can_and_do_not_spill(tmp_path: pathlib.Path) -> None:
     pattern = (
-        r"carried (\S+) m and hangs (\S+) m [^@]* by at most (\S+) mm [^@]* by at most (\S+) degrees"
-        r"[^@]* at most (\S+) of the friction [^@]* at most (\S+) R, and by (\S+) R after"
+        r"carried (\S+) m and hangs (\S+) m [^@]* by at most (\S+) mm "
+        r"[^@]* by at most (\S+) degrees[^@]* at most (\S+) of the friction [^@]* at most (\S+) R, and by (\S+) R after"
     )
     ((carried, height, slip, tilt, used, rise, ringing),) = told("grasp", tmp_path, pattern)
     example = runpy.run_path(str(EXAMPLES / "grasp.py"))
@@ -70,7 +70,7 @@ def test_two_fingers_carry_a_can_and_do_not_spill(tmp_path: pathlib.Path) -> Non
     assert height == pytest.approx(example["LIFT"] - 4e-4 - weight / 2e4, abs=1e-4)
     # Friction in MuJoCo creeps: at 10 um/s, this makes 0.04 mm.
     assert slip < 0.1
-    # A pendulum with the fingers as its axis would tilt by a/g, 4.5 degrees, and by more as it rings.
+    # A pendulum with the fingers as its axis would tilt by a/g, 4.5 degrees, and more as it rings.
     assert tilt < 0.2
     # At rest the weight needs the least. With the moment about the fingers, and what slosh adds, it
     # must be well below 1, where the can slips.

@@ -18,8 +18,9 @@ from mjbeer.theory.standing import QUANTITATIVE, Standing
     ids=repr,
 )
 def test_the_liquid_is_let_go_and_rings_as_theory_says(can: Standing) -> None:
-    """Of half a second the error is that of a pendulum: its period is longer by the 16th of the square
-    of its angle, 0.12 rad, so that the phase lags by 9e-4 of some 12 rad, and the rise by 1.1e-3 R."""
+    """After half a second the error is that of a pendulum: its period is longer by the 16th of the
+    square of its angle, 0.12 rad, so that the phase lags by 9e-4 of some 12 rad, and the rise by
+    1.1e-3 R."""
     motion = slosh(can, build(can, free=False), 0.5)
     assert motion.rise[0] == pytest.approx(QUANTITATIVE, rel=1e-12)
     assert np.abs(motion.rise - free_decay(can, motion.time)).max() < 1.1e-3
@@ -31,14 +32,14 @@ def test_the_liquid_is_let_go_and_rings_as_theory_says(can: Standing) -> None:
 @pytest.mark.draws
 @pytest.mark.slow
 def test_the_surface_is_seen_to_tilt() -> None:
-    """Half a period later the liquid is as high at the other side: what changes is to the left and to
-    the right of the axis, with opposite signs."""
+    """Half a period later the liquid is as high at the other side: what changes is to the left and
+    to the right of the axis, with opposite signs."""
     can = standing("water")
     half_period = np.pi / can.frequencies()[0]
     plan = StandingFilm(can, half_period, speed=1.0).plan()
     times = np.array([0.0, half_period])
     right, left = (picture.astype(float) for picture in plan.draw(times, 640, 480))
-    # Only the scene, whose picture is 640 x 380, between title and chart; red tells liquid from wall.
+    # Only the scene, between title and chart; blue, which the beer lacks, tells it from the wall.
     beer = [(picture[90:320, :, 2] < 120).sum(axis=0) for picture in (right, left)]
     gained = beer[0].astype(float) - beer[1]
     middle = 320

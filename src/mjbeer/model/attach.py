@@ -211,8 +211,8 @@ def surface_slope(model: mujoco.MjModel, data: mujoco.MjData, prefix: str) -> np
     """Return how high the liquid of a standing can rises at the walls towards +x and +y, in radii.
 
     Every mode varies with the cosine of the angle around the axis, and so does their sum: the two
-    numbers are the vector -sum(2/(xi^2 - 1) (x, y)) with the sines (x, y) of the pendulums' tilts in
-    the frame of the can, and its length is the largest rise.
+    numbers are the vector -sum(2/(xi^2 - 1) (x, y)) with the sines (x, y) of the pendulums' tilts
+    in the frame of the can, and its length is the largest rise.
     """
     joint = mujoco.mjtObj.mjOBJ_JOINT
     names = [f"{prefix}{slosh}" for slosh in _SLOSHES]

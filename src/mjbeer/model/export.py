@@ -32,9 +32,9 @@ PORTABLE: tuple[MujocoIntegrator, ...] = ("Euler", "implicitfast", "RK4")
 """The integrators of a portable export. MJX and mujoco_warp have no "implicit", and MuJoCo 3.3 has
 no "discrete"."""
 DIGITS = 12
-"""Digits of the numbers of an export, as many as in the files of mjcf/. They are within 5e-12 of the
-model's, and the motion after a second is within 1e-10 rad of its motion: with RK4 that itself is
-only within 1e-8 rad of the truth."""
+"""Digits of the numbers of an export, as many as in the files of mjcf/. They are within 5e-12 of
+the model's, and the motion after a second is within 1e-10 rad of its motion: with RK4 that itself
+is only within 1e-8 rad of the truth."""
 _DRAWN_DIGITS = 6
 """Digits of what is only drawn, which MuJoCo keeps in single precision."""
 _DRAWN_ATTRIBUTES = (
@@ -72,7 +72,8 @@ def export(
     By default the `looks` are "plain": the can is a cylinder that one can see through, and the file
     has 4 to 11 kB. A file is made to be read, edited and put into other worlds, and meshes would be
     more than nine tenths of it. With "full" it has the meshes that mjbeer draws, and 120 to 190 kB.
-    Both have the same mechanics, in numbers of `DIGITS` digits.
+    Both have the same mechanics, in numbers of `DIGITS` digits. Meshes of your own, from a folder
+    `mjcf`, are only in a file with full looks.
 
     A `standing` can is written with the floor that it stands on, or, with `free=False`, without it
     and held in place. Of the other parameters it has `integrator`, `timestep`, `mjcf`,

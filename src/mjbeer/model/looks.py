@@ -199,7 +199,7 @@ def simplify(spec: mujoco.MjSpec, can: Scene | Standing) -> None:
 
     The wall is a cylinder that one can see through, with a disc at its far end and a rod along it
     that shows how far it has turned. The only mesh that is left is that of a load with a fill, with
-    fewer edges. Materials have no textures.
+    fewer edges. The can's materials have no textures.
     """
     for geom in list(spec.geoms):
         if geom.meshname not in ("", "load") and geom.name not in _PLAIN:
@@ -211,7 +211,8 @@ def simplify(spec: mujoco.MjSpec, can: Scene | Standing) -> None:
         if material.name not in ("grid", "planks"):
             material.textures = [""] * len(material.textures)
     _delete_unused(spec.meshes, {geom.meshname for geom in spec.geoms}, spec)
-    _delete_unused(spec.materials, {geom.material for geom in spec.geoms}, spec)
+    painted = (*spec.geoms, *spec.sites, *spec.tendons)
+    _delete_unused(spec.materials, {element.material for element in painted}, spec)
     used_textures = {texture for material in spec.materials for texture in material.textures}
     _delete_unused(spec.textures, used_textures | {"sky"}, spec)
 
