@@ -59,7 +59,8 @@ def test_cans_that_are_carried_are_felt_as_theory_says(tmp_path: pathlib.Path) -
 def test_two_fingers_carry_a_can_and_do_not_spill(tmp_path: pathlib.Path) -> None:
     pattern = (
         r"carried (\S+) m and hangs (\S+) m [^@]* by at most (\S+) mm "
-        r"[^@]* by at most (\S+) degrees[^@]* at most (\S+) of the friction [^@]* at most (\S+) R, and by (\S+) R after"
+        r"[^@]* by at most (\S+) degrees[^@]* at most (\S+) of the friction "
+        r"[^@]* at most (\S+) R, and by (\S+) R after"
     )
     ((carried, height, slip, tilt, used, rise, ringing),) = told("grasp", tmp_path, pattern)
     example = runpy.run_path(str(EXAMPLES / "grasp.py"))
