@@ -34,6 +34,8 @@ def long_description(readme: str, repository: str | None) -> str:
 
     def absolute(link: re.Match[str]) -> str:
         view = "raw" if link["image"] else "blob"
-        return f"{link['image']}[{link['text']}]({repository.rstrip('/')}/{view}/HEAD/{link['path']})"
+        return (
+            f"{link['image']}[{link['text']}]({repository.rstrip('/')}/{view}/HEAD/{link['path']})"
+        )
 
     return _RELATIVE.sub(absolute, readme)

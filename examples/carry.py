@@ -25,9 +25,17 @@ def world() -> mujoco.MjModel:
         place = [0, APART * lane, HEIGHT]
         hand = spec.worldbody.add_body(name=f"{name}-hand", pos=place, mocap=True)
         top = [0, 0, can.can.length]
-        hand.add_geom(type=mujoco.mjtGeom.mjGEOM_BOX, size=[0.04, 0.04, 0.005], pos=top, contype=0, conaffinity=0)
+        hand.add_geom(
+            type=mujoco.mjtGeom.mjGEOM_BOX,
+            size=[0.04, 0.04, 0.005],
+            pos=top,
+            contype=0,
+            conaffinity=0,
+        )
         held = mjbeer.attach(spec, can, pos=place, prefix=f"{name}-")
-        weld = spec.add_equality(name=f"{name}-grip", type=mujoco.mjtEq.mjEQ_WELD, name1=hand.name, name2=held.name)
+        weld = spec.add_equality(
+            name=f"{name}-grip", type=mujoco.mjtEq.mjEQ_WELD, name1=hand.name, name2=held.name
+        )
         weld.objtype, weld.solref = mujoco.mjtObj.mjOBJ_BODY, [2 * TIMESTEP, 1]
         weld.data[:11] = [0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 1]  # the two origins are at the same place
     return spec.compile()
@@ -59,4 +67,6 @@ if __name__ == "__main__":
     times, felt = forces()
     for name, force in felt.items():
         ringing = np.abs(force[times > MOVE + 0.1]).max()
-        print(f"{name}: at most {np.abs(force).max():.3f} N during the move, {ringing:.3f} N after the stop")
+        print(
+            f"{name}: at most {np.abs(force).max():.3f} N during the move, {ringing:.3f} N after the stop"
+        )

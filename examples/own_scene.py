@@ -11,7 +11,10 @@ import numpy as np
 import mjbeer
 
 SCENE = mjbeer.sliding(incline=math.radians(5), fill=0.3, can=mjbeer.Can.sheet_metal())
-PHI0, PHI_DOT0 = 1.0, 0.0  # the start: the angle of the beer's surface to the incline [rad], and its rate [rad/s]
+PHI0, PHI_DOT0 = (
+    1.0,
+    0.0,
+)  # the start: the angle of the beer's surface to the incline [rad], and its rate [rad/s]
 DURATION = 2.0  # [s]
 
 

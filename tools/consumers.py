@@ -31,7 +31,10 @@ def with_mujoco(path: str) -> float:
 
 def by_name(model: object, qpos: object) -> dict[str, float]:
     """Return the positions of the joints of a MuJoCo model by name."""
-    return {model.joint(each).name: float(qpos[model.joint(each).qposadr[0]]) for each in range(model.njnt)}  # ty: ignore
+    return {
+        model.joint(each).name: float(qpos[model.joint(each).qposadr[0]])
+        for each in range(model.njnt)
+    }  # ty: ignore
 
 
 def with_dm_control(path: str) -> float:
@@ -67,9 +70,13 @@ def with_mjx_single(path: str) -> float:
 
     def step(_: int, before: object) -> object:
         # A spatial tendon's whole numbers come out with 64 bits, which a loop of JAX's does not accept.
-        return jax.tree.map(lambda old, new: new.astype(old.dtype), before, mjx.step(device_model, before))
+        return jax.tree.map(
+            lambda old, new: new.astype(old.dtype), before, mjx.step(device_model, before)
+        )
 
-    move = jax.jit(lambda first: jax.lax.fori_loop(0, round(DURATION / model.opt.timestep), step, first))
+    move = jax.jit(
+        lambda first: jax.lax.fori_loop(0, round(DURATION / model.opt.timestep), step, first)
+    )
     return phi(by_name(model, move(state).qpos))
 
 

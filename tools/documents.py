@@ -27,14 +27,14 @@ from mjbeer.studies.benchmark.points import SHIPPED, Benchmark
 from mjbeer.studies.stability import stability_maps, stability_study
 from mjbeer.studies.stability.judge import (
     BOTH,
-    DOUBTED,
     NOBODY,
     REFUSED,
     RIGHT,
     SERIES,
-    SILENT,
     THEORY,
+    UNDETECTED_ERROR,
     VERDICTS,
+    WARNED,
 )
 from mjbeer.studies.validation.validate import checks
 from mjbeer.theory.liquid import LIQUIDS, NAMES, centrifugal_ratio, liquid_in
@@ -49,7 +49,7 @@ from tests.support import rows  # noqa: E402
 
 DOCUMENTS = [CHECKOUT / "README.md", *sorted(CHECKOUT.glob("docs/*.md"))]
 COUNTS = json.loads((CHECKOUT / "docs" / "stability.json").read_text(encoding="utf-8"))
-BENCHMARK, MAPS = Benchmark.load(SHIPPED), stability_maps.load()["maps"]
+BENCHMARK, MAPS = Benchmark.load(SHIPPED), stability_maps.load().maps
 MARKED = re.compile(r"(<!-- made: (?P<name>[\w-]+) -->\n).*?(<!-- end -->)", re.DOTALL)
 LEFT_OUT = ("sliding-metal",)  # it takes as long as the massless can, within 5 %
 PEERS = {"mujoco": "MuJoCo", "scipy": "SciPy", "numba": "numba", "heyoka": "heyoka"}
@@ -62,7 +62,9 @@ def anew(text: str) -> str:
     return MARKED.sub(lambda found: f"{found[1]}{MADE[found['name']]().strip()}\n{found[3]}", text)
 
 
-def table(columns: tuple[str, ...], lines: Sequence[tuple[str, ...]], left: tuple[int, ...] = (0,)) -> str:
+def table(
+    columns: tuple[str, ...], lines: Sequence[tuple[str, ...]], left: tuple[int, ...] = (0,)
+) -> str:
     """Return a table as Markdown."""
     return Table("", columns, lines, left).markdown()
 
@@ -126,13 +128,17 @@ def misprints() -> str:
     """What is wrong in the paper, and by how much."""
     found = [(row.equation, row.misprint) for row in paper.claims() if row.misprint]
     kinds = {MISPRINT: "", CONSEQUENCE: " (follows)", APPROXIMATION: " (approximation)"}
-    lines = [(name, each.about + kinds[each.kind], f"{each.expected_error:.2g}") for name, each in found]
+    lines = [
+        (name, each.about + kinds[each.kind], f"{each.expected_error:.2g}") for name, each in found
+    ]
     return table(("equation", "what is wrong in it", "its error"), lines, left=(0, 1))
 
 
 def some(shown: Table) -> str:
     """Return a table without the rows that say little more than their neighbours."""
-    return table(shown.columns, [row for row in shown.rows if not any(each in row[0] for each in LEFT_OUT)])
+    return table(
+        shown.columns, [row for row in shown.rows if not any(each in row[0] for each in LEFT_OUT)]
+    )
 
 
 def others() -> str:
@@ -191,7 +197,10 @@ def stable_slip(integrator: str) -> float:
     if integrator not in predictions.RUNGE_KUTTA:
         return math.inf if integrator == "discrete" else 1.0
     coefficients = predictions.polynomial(integrator)[::-1]
-    return predictions.first(lambda rate: abs(float(np.polyval(coefficients, -rate))) - 1, 0.1, 50.0) / 2
+    return (
+        predictions.first(lambda rate: abs(float(np.polyval(coefficients, -rate))) - 1, 0.1, 50.0)
+        / 2
+    )
 
 
 def steps() -> str:
@@ -213,15 +222,23 @@ def steps() -> str:
         "swing within 1 % for ten periods: ωh below": predictions.accurate_limit,
     }
     lines = [
-        (name, *("no limit" if (most := limit(each)) == math.inf else f"{most:.2g}" for each in methods))
+        (
+            name,
+            *(
+                "no limit" if (most := limit(each)) == math.inf else f"{most:.2g}"
+                for each in methods
+            ),
+        )
         for name, limit in bounded.items()
     ]
-    return table(("", "Euler, implicit, implicitfast", "discrete", "RK4", "DOP853 around MuJoCo"), lines)
+    return table(
+        ("", "Euler, implicit, implicitfast", "discrete", "RK4", "DOP853 around MuJoCo"), lines
+    )
 
 
 def agreement() -> str:
     """How the maps came out, and how near their borders in gravity are to the limit of a swing."""
-    maps = [each for each in MAPS if each["family"] != "damping"]
+    maps = [each for each in MAPS if each.family != "damping"]
     runs, _ = stability_maps.summary(maps)
     return prose(
         f"{len(maps)} maps of timestep and stiffness, {runs:,} short runs in all, agree with this. In gravity the "
@@ -234,10 +251,10 @@ def border_error() -> float:
     """Return how far measured borders in gravity are from the limit of a swing [%], at worst."""
     worst = 0.0
     for each in MAPS:
-        for value, (border, _) in zip(each["values"], each["boundaries"], strict=True):
+        for value, (border, _) in zip(each.values, each.boundaries, strict=True):
             # At the shortest timestep there is no border to measure: all runs explode.
-            if each["family"] == "gravity" and border and border > each["timesteps"][0]:
-                limit = predictions.stable_limit(each["integrator"])
+            if each.family == "gravity" and border and border > each.timesteps[0]:
+                limit = predictions.stable_limit(each.integrator)
                 worst = max(worst, abs(border * frozen(0.0, gravity=value).frequency() / limit - 1))
     return 100 * worst
 
@@ -246,18 +263,22 @@ def damped() -> str:
     """How damped runs of a millisecond a step end, by damping."""
     words = "explodes", "inaccurate", "accurate"
     dampings, lines = (0.01, 0.1, 1.0), []
-    for of in (each for each in MAPS if each["family"] == "damping"):
-        step = min(range(len(of["timesteps"])), key=lambda at: abs(math.log(of["timesteps"][at] / 1e-3)))
-        values = [min(of["values"], key=lambda value: abs(math.log(value / damping))) for damping in dampings]
-        ended = (words[int(of["measured"][of["values"].index(value)][step])] for value in values)
-        lines.append((of["integrator"], *ended))
-    return table(("1 ms", *(f"{damping:g} N m s" for damping in dampings)), lines, left=(0, 1, 2, 3))
+    for of in (each for each in MAPS if each.family == "damping"):
+        step = min(range(len(of.timesteps)), key=lambda at: abs(math.log(of.timesteps[at] / 1e-3)))
+        values = [
+            min(of.values, key=lambda value: abs(math.log(value / damping))) for damping in dampings
+        ]
+        ended = (words[int(of.measured[of.values.index(value)][step])] for value in values)
+        lines.append((of.integrator, *ended))
+    return table(
+        ("1 ms", *(f"{damping:g} N m s" for damping in dampings)), lines, left=(0, 1, 2, 3)
+    )
 
 
 def damped_runs() -> str:
     """How the runs in the maps of damping ended."""
-    maps = [each for each in MAPS if each["family"] == "damping"]
-    count = Counter("".join("".join(each["measured"]) for each in maps))
+    maps = [each for each in MAPS if each.family == "damping"]
+    count = Counter("".join("".join(each.measured) for each in maps))
     _, worst = stability_maps.summary(maps)
     return prose(
         f"Of {count.total():,} runs in these maps {count['0']:,} explode, {count['1']:,} are inaccurate and "
@@ -272,13 +293,13 @@ def ended(count: dict[str, int]) -> int:
 
 def trusted(count: dict[str, int]) -> int:
     """Return the number of runs that did not doubt themselves."""
-    return count.get(RIGHT, 0) + count.get(SILENT, 0)
+    return count.get(RIGHT, 0) + count.get(UNDETECTED_ERROR, 0)
 
 
 def wrong_of(count: dict[str, int]) -> str:
     """Return how many of the trusted runs were wrong, and how many may be."""
     share = stability_study.bound(count)
-    found = f"{count.get(SILENT, 0)} of these were wrong"
+    found = f"{count.get(UNDETECTED_ERROR, 0)} of these were wrong"
     if share is None:
         return found
     return f"{found} (with 95 % confidence at most {stability_study.rounded_up(100 * share)} % of trusted runs are)"
@@ -291,10 +312,16 @@ def alone(count: dict[str, int]) -> int:
 
 def kinds() -> str:
     """How the random runs ended, by kind of model, and what judged them."""
-    shown = next(each for each in stability_study.search_tables(COUNTS) if "by model" in each.title)
+    counted = stability_study.Totals(COUNTS["known"], COUNTS["kinds"])
+    shown = next(
+        each for each in stability_study.search_tables(counted) if "by model" in each.title
+    )
     left_out = NOBODY, BOTH, SERIES, stability_study.ABOVE, stability_study.TWICE
     columns = [at for at, name in enumerate(shown.columns) if name not in left_out]
-    return table(tuple(shown.columns[at] for at in columns), [tuple(row[at] for at in columns) for row in shown.rows])
+    return table(
+        tuple(shown.columns[at] for at in columns),
+        [tuple(row[at] for at in columns) for row in shown.rows],
+    )
 
 
 def honesty() -> str:
@@ -308,11 +335,11 @@ def honesty() -> str:
         refused += f", {outside:,} of them because they are outside the domain"
     return prose(
         f"{ended(found):,} random runs, with the numbers from {first} on, ended like this: {trusted(found):,} were "
-        f"trusted, and {wrong_of(found)}. {found.get(DOUBTED, 0):,} were doubted, {found.get(needless, 0):,} of them "
+        f"trusted, and {wrong_of(found)}. {found.get(WARNED, 0):,} were doubted, {found.get(needless, 0):,} of them "
         f"although their samples were right, and {refused}. {alone(found):,} were judged "
         f"by one theory alone, and {found.get(NOBODY, 0)} by none. {found.get(above, 0)} of the trusted runs had an "
         f"error above its estimate, {found.get(twice, 0)} of them above twice the estimate. Of {ended(known):,} runs "
-        f"of known cases {trusted(known):,} were trusted, and {known.get(SILENT, 0)} of these were wrong."
+        f"of known cases {trusted(known):,} were trusted, and {known.get(UNDETECTED_ERROR, 0)} of these were wrong."
     )
 
 
@@ -327,7 +354,9 @@ def speeds() -> str:
                 warnings.simplefilter("ignore", LiquidWarning)
                 scene = liquid(name, incline)
             speed = scene.terminal_speed()
-            within = centrifugal_ratio(scene, speed) < 1 and liquid_in(name, incline).carried < 1 / 3
+            within = (
+                centrifugal_ratio(scene, speed) < 1 and liquid_in(name, incline).carried < 1 / 3
+            )
             cells.append(f"{speed:.2g}" if within else f"({speed:.2g})")
         arc = math.pi * scene.can.radius
         lines.append((
@@ -348,7 +377,12 @@ def metre() -> str:
     for volume in (1.0, 6.0, 10.0, 50.0, 177.0, 350.0):
         free = real_beer.water_in(volume, GENTLE, friction=0.0)
         runs = []
-        for friction, drag in ((1.0, 0.0), (1 / real_beer.SPREAD, 0.0), (real_beer.SPREAD, 0.0), (1.0, real_beer.DRAG)):
+        for friction, drag in (
+            (1.0, 0.0),
+            (1 / real_beer.SPREAD, 0.0),
+            (real_beer.SPREAD, 0.0),
+            (1.0, real_beer.DRAG),
+        ):
             scene = real_beer.water_in(volume, GENTLE, friction, drag)
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", LiquidWarning)

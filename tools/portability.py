@@ -57,11 +57,23 @@ class Other:
         with FileLock(f"{folder}.lock"):  # several processes may run the tests
             if not stamp.exists() or stamp.read_text() != "\n".join(self.requirements):
                 subprocess.run([sys.executable, "-m", "venv", "--clear", folder], check=True)
-                pip = [program, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--only-binary=:all:"]
-                ran = subprocess.run([*pip, *self.requirements], capture_output=True, text=True, check=False)
+                pip = [
+                    program,
+                    "-m",
+                    "pip",
+                    "install",
+                    "--quiet",
+                    "--disable-pip-version-check",
+                    "--only-binary=:all:",
+                ]
+                ran = subprocess.run(
+                    [*pip, *self.requirements], capture_output=True, text=True, check=False
+                )
                 if ran.returncode:
                     shutil.rmtree(folder)
-                    raise AbsentError(f"pip cannot install {self.name}: {ran.stderr.strip().splitlines()[-1]}")
+                    raise AbsentError(
+                        f"pip cannot install {self.name}: {ran.stderr.strip().splitlines()[-1]}"
+                    )
                 stamp.write_text("\n".join(self.requirements))
         return str(program)
 
@@ -92,9 +104,15 @@ def wanted() -> list[str]:
       ValueError: if a name is unknown.
     """
     text = os.environ.get("MJBEER_OTHERS", "")
-    names = list(BY_NAME) if text == "all" else [name.strip() for name in text.split(",") if name.strip()]
+    names = (
+        list(BY_NAME)
+        if text == "all"
+        else [name.strip() for name in text.split(",") if name.strip()]
+    )
     if unknown := [name for name in names if name not in BY_NAME]:
-        raise ValueError(f"MJBEER_OTHERS names {unknown[0]!r}; allowed are all, or some of {', '.join(BY_NAME)}")
+        raise ValueError(
+            f"MJBEER_OTHERS names {unknown[0]!r}; allowed are all, or some of {', '.join(BY_NAME)}"
+        )
     return names
 
 
@@ -105,7 +123,12 @@ def timestep(name: str) -> float:
 
 def cases() -> list[tuple[str, Rolling]]:
     """Return all scenes by name, each with every way of rolling that MuJoCo has for it."""
-    return [(name, rolling) for name, scene in SCENES.items() for rolling in ROLLINGS if supported(scene, rolling)]
+    return [
+        (name, rolling)
+        for name, scene in SCENES.items()
+        for rolling in ROLLINGS
+        if supported(scene, rolling)
+    ]
 
 
 def final_phi(scene: Scene) -> float:
@@ -125,16 +148,22 @@ def errors(other: Other, portable: bool = True) -> dict[tuple[str, str], float |
         for number, (name, rolling) in enumerate(cases()):
             path = paths[name, rolling] = pathlib.Path(folder) / f"{number}.xml"
             scene, step = SCENES[name], timestep(name)
-            export(scene, path, *START, rolling, timestep=step, friction=FRICTION, portable=portable)
+            export(
+                scene, path, *START, rolling, timestep=step, friction=FRICTION, portable=portable
+            )
         words = [python, _CONSUMERS, other.word, *paths.values()]
         env = {**os.environ, "JAX_PLATFORMS": "cpu", "MUJOCO_GL": "disable"}
-        ran = subprocess.run(words, capture_output=True, text=True, check=False, env=env, cwd=folder)
+        ran = subprocess.run(
+            words, capture_output=True, text=True, check=False, env=env, cwd=folder
+        )
     if ran.returncode:  # some tools end the process instead of raising an error
         last = ran.stderr.strip().splitlines()[-1]
         return dict.fromkeys(paths, f"it ends with {last[-120:]}")
     found = json.loads(ran.stdout.splitlines()[-1])
     return {
-        (name, rolling): value if isinstance(value := found[str(path)], str) else abs(value - final_phi(SCENES[name]))
+        (name, rolling): value
+        if isinstance(value := found[str(path)], str)
+        else abs(value - final_phi(SCENES[name]))
         for (name, rolling), path in paths.items()
     }
 
@@ -149,10 +178,16 @@ def row(other: Other, portable: bool) -> str:
     for kind in ("sliding", "frozen"):
         for rolling in ROLLINGS:
             values = [
-                value for (name, how), value in found.items() if how == rolling and SCENES[name].attachment == kind
+                value
+                for (name, how), value in found.items()
+                if how == rolling and SCENES[name].attachment == kind
             ]
             reasons = [value for value in values if isinstance(value, str)]
-            numbers = [math.inf if math.isnan(value) else value for value in values if isinstance(value, float)]
+            numbers = [
+                math.inf if math.isnan(value) else value
+                for value in values
+                if isinstance(value, float)
+            ]
             cells.append(reasons[0] if reasons else f"{max(numbers):.1e}")
     return f"| {other.name} | {' | '.join(cells)} |"
 
@@ -160,8 +195,15 @@ def row(other: Other, portable: bool) -> str:
 def main() -> None:
     """Print a table of all tools, or of those in MJBEER_OTHERS, with portable exports and with ordinary ones."""
     for portable in (True, False):
-        print(f"\n{'portable' if portable else 'ordinary'} exports: largest error of phi after 1 s [rad]")
-        print("| tool | " + " | ".join(f"{kind}, {rolling}" for kind in ("sliding", "frozen") for rolling in ROLLINGS))
+        print(
+            f"\n{'portable' if portable else 'ordinary'} exports: largest error of phi after 1 s [rad]"
+        )
+        print(
+            "| tool | "
+            + " | ".join(
+                f"{kind}, {rolling}" for kind in ("sliding", "frozen") for rolling in ROLLINGS
+            )
+        )
         for name in wanted() or BY_NAME:
             print(row(BY_NAME[name], portable), flush=True)
 

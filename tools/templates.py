@@ -46,7 +46,9 @@ class Template(NamedTuple):
 
 _PENDULUM = pendulum()
 TEMPLATES = {
-    "sliding": Template("Beer that slides without friction in a can of sheet metal", "sliding_equality", "sliding"),
+    "sliding": Template(
+        "Beer that slides without friction in a can of sheet metal", "sliding_equality", "sliding"
+    ),
     "frozen": Template("Beer frozen to a massless can", "frozen_equality", "frozen"),
     "pendulum": Template(
         "A pendulum on the axle of a wheel, appendix B of the paper",
@@ -76,7 +78,9 @@ TEMPLATES = {
             "push": Start(-3, 16),
         },
     ),
-    "standing": Template("A can of beer that stands on a floor, free in space", "standing", "standing"),
+    "standing": Template(
+        "A can of beer that stands on a floor, free in space", "standing", "standing"
+    ),
     "lying": Template("A can of beer that lies on an incline, free in space", "lying", "sliding"),
 }
 
@@ -92,11 +96,15 @@ def text(name: str, folder: pathlib.Path) -> str:
         _replace_keyframes(root, template.scene, template.keys)
     looks.add_looks(root, template.looks, folder)
     root.set("model", name)
-    sources = f"mechanics/{template.mechanics}.xml, which has the reasons, and looks/{template.looks}.xml"
+    sources = (
+        f"mechanics/{template.mechanics}.xml, which has the reasons, and looks/{template.looks}.xml"
+    )
     root.insert(0, ET.Comment(f" Written by `make templates` from {sources}. Edit those. "))
     root.insert(0, ET.Comment(f" {template.about}. "))
     for element in root.iter():
-        element.attrib.update({key: " ".join(value.split()) for key, value in element.attrib.items()})
+        element.attrib.update(
+            {key: " ".join(value.split()) for key, value in element.attrib.items()}
+        )
     ET.indent(root)
     lines = ET.tostring(root, encoding="unicode").replace(" />", "/>").splitlines()
     return "".join(f"{_wrap(line)}\n" for line in lines)
@@ -140,7 +148,9 @@ def _wrap(line: str) -> str:
 def digests(folder: pathlib.Path) -> str:
     """Return the SHA-256 of the mechanics files of scenes in a folder, one a line, with their
     names."""
-    mechanics = sorted([*folder.glob("mechanics/sliding_*.xml"), *folder.glob("mechanics/frozen_*.xml")])
+    mechanics = sorted(
+        [*folder.glob("mechanics/sliding_*.xml"), *folder.glob("mechanics/frozen_*.xml")]
+    )
     return "".join(f"{digest(mjcf_file.content(path))}  {path.name}\n" for path in mechanics)
 
 

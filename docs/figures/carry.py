@@ -24,19 +24,33 @@ def peak(run: Carried, start: float, end: float) -> float:
 def draw(path: pathlib.Path) -> None:
     """Draw the force while a can is moved in a second, and the rigid can's error over the time of the move."""
     beer, rigid = (
-        [carry(standing(modes=modes), DISTANCE, move, AFTER) for move in (*MOVES, MOVE)] for modes in MODES.values()
+        [carry(standing(modes=modes), DISTANCE, move, AFTER) for move in (*MOVES, MOVE)]
+        for modes in MODES.values()
     )
-    peaks = [np.array([peak(run, 0.0, move) for run, move in zip(of, MOVES, strict=False)]) for of in (beer, rigid)]
+    peaks = [
+        np.array([peak(run, 0.0, move) for run, move in zip(of, MOVES, strict=False)])
+        for of in (beer, rigid)
+    ]
     after = np.array([peak(run, move, math.inf) for run, move in zip(beer, MOVES, strict=False)])
     highest = np.array([np.abs(run.rise).max() for run in beer[:-1]])
-    title, subtitle = "A can on its gripper", "half a 12-oz can of beer, moved 0.4 m with the least jerk"
-    with plots.chart(path, columns=2, width=10, height=4.2, title=title, subtitle=subtitle) as (left, right):
+    title, subtitle = (
+        "A can on its gripper",
+        "half a 12-oz can of beer, moved 0.4 m with the least jerk",
+    )
+    with plots.chart(path, columns=2, width=10, height=4.2, title=title, subtitle=subtitle) as (
+        left,
+        right,
+    ):
         for name, of, colour in zip(MODES, (beer, rigid), plots.COLOURS, strict=False):
             left.plot(of[-1].time, of[-1].force, color=colour, label=name)
         left.set(xlabel="time [s]", ylabel="force [N]", title="moved in 1 s")
         left.legend()
-        right.plot(MOVES, 100 * (1 - peaks[1] / peaks[0]), color=plots.COLOURS[1], label="peak force")
-        right.plot(MOVES, 100 * after / peaks[0], color=plots.COLOURS[2], label="ringing after the stop")
+        right.plot(
+            MOVES, 100 * (1 - peaks[1] / peaks[0]), color=plots.COLOURS[1], label="peak force"
+        )
+        right.plot(
+            MOVES, 100 * after / peaks[0], color=plots.COLOURS[2], label="ringing after the stop"
+        )
         first = float(np.interp(-INDICATIVE, -highest, MOVES))
         right.set_ylim(-1, 24)  # so that the curves leave room for the note and the legend
         right.axvspan(min(MOVES), first, color=plots.GREY, alpha=0.12, linewidth=0)

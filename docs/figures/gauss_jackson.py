@@ -79,7 +79,8 @@ def costs(scene: Scene) -> tuple[Cost, Cost]:
     """Return the costs of DOP853 and of Gauss-Jackson."""
     time = sundman_time_of(scene)
     runge_kutta = [
-        lambda dynamics, local=local: DOP853(dynamics, local_tolerance=float(local)) for local in LOCAL_TOLERANCES
+        lambda dynamics, local=local: DOP853(dynamics, local_tolerance=float(local))
+        for local in LOCAL_TOLERANCES
     ]
     multistep = [lambda dynamics, h=h: GaussJackson(dynamics, float(h), time) for h in TIMESTEPS]
     return cost(scene, runge_kutta), cost(scene, multistep)
@@ -112,16 +113,26 @@ def draw(path: pathlib.Path) -> None:
     """Draw the steps along half a swing of a light wheel, and the error against evaluations."""
     title = "What Gauss-Jackson gains"
     subtitle = f"loads that are let go at {PHI0:g} rad, on MuJoCo's reduced models"
-    with plots.chart(path, columns=2, width=10, height=4.4, title=title, subtitle=subtitle) as (left, right):
+    with plots.chart(path, columns=2, width=10, height=4.4, title=title, subtitle=subtitle) as (
+        left,
+        right,
+    ):
         wheel = pendulum(wheel_mass=LIGHTEST)
         end = 0.5 * wheel.period(PHI0)
         ends = step_ends(wheel, 0.01, end)
         even = np.linspace(0, end, len(ends))
         shown = np.linspace(0, end, 500)
         left.plot(shown, exact(wheel, shown, PHI0).phi, **plots.THEORY)
-        left.plot(even, exact(wheel, even, PHI0).phi, "o", color=plots.COLOURS[1], label="steps even in t")
         left.plot(
-            ends, exact(wheel, ends, PHI0).phi, "o", color=plots.COLOURS[0], label="steps even in s", markersize=4
+            even, exact(wheel, even, PHI0).phi, "o", color=plots.COLOURS[1], label="steps even in t"
+        )
+        left.plot(
+            ends,
+            exact(wheel, ends, PHI0).phi,
+            "o",
+            color=plots.COLOURS[0],
+            label="steps even in s",
+            markersize=4,
         )
         left.set(xlabel="time t [s]", ylabel="φ [rad]", title="half a swing in a wheel of 1 g")
         left.legend()
@@ -129,7 +140,9 @@ def draw(path: pathlib.Path) -> None:
             runge_kutta, multistep = costs(scene)
             right.loglog(runge_kutta.evaluations, runge_kutta.errors, "--", color=colour)
             right.loglog(multistep.evaluations, multistep.errors, "-", color=colour, label=name)
-        right.set(xlabel="evaluations of MuJoCo's accelerations", ylabel="largest error of φ in 2 s [rad]")
+        right.set(
+            xlabel="evaluations of MuJoCo's accelerations", ylabel="largest error of φ in 2 s [rad]"
+        )
         right.set(title="error against work", ylim=(1e-15, 1e-1), xlim=(50, 3e5))
         right.plot([], [], "--", color=plots.GREY, label="with DOP853")
         right.legend(loc="upper right", bbox_to_anchor=(1.02, 1.0))

@@ -48,10 +48,16 @@ def water_in(volume: float, incline: float, friction: float = 1.0, drag: float =
     `friction` is a factor of the water's torque; with 0 there is none.
     """
     area = 1e-6 * volume / (CAN.radius**2 * CAN.length)
-    half_angle = float(brentq(lambda beta: beta - math.sin(2 * beta) / 2 - area, 0, math.pi, xtol=1e-15))
+    half_angle = float(
+        brentq(lambda beta: beta - math.sin(2 * beta) / 2 - area, 0, math.pi, xtol=1e-15)
+    )
     fill = math.sin(half_angle / 2) ** 2
     own = liquid_in("water", incline, fill, CAN).damping
-    damping = Damping(friction * own.linear, friction * own.quadratic, valid_rates=own.valid_rates) if friction else 0.0
+    damping = (
+        Damping(friction * own.linear, friction * own.quadratic, valid_rates=own.valid_rates)
+        if friction
+        else 0.0
+    )
     return sliding(incline, fill, CAN, LIQUIDS["water"].density, damping=damping, drag=drag)
 
 
@@ -99,19 +105,26 @@ def let_go(scene: Scene, times: np.ndarray) -> Trajectory:
 
 
 @functools.cache
-def _simulated(incline: float, friction: float = 1.0, drag: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
+def _simulated(
+    incline: float, friction: float = 1.0, drag: float = 0.0
+) -> tuple[np.ndarray, np.ndarray]:
     """Return the mean accelerations over the first metre of all volumes, by MuJoCo, and whether each can stays slow
     enough for its liquid to be one lump."""
     scenes = [water_in(float(volume), incline, friction, drag) for volume in _VOLUMES]
     runs = [let_go(scene, times_of(scene)) for scene in scenes]
-    return np.array([over_first_metre(run) for run in runs]), np.array([lump_until(run) > _WAY for run in runs])
+    return np.array([over_first_metre(run) for run in runs]), np.array(
+        [lump_until(run) > _WAY for run in runs]
+    )
 
 
 def draw_first_metre(path: pathlib.Path) -> None:
     """Draw the mean acceleration over the first metre over the water in the can, on three inclines, and its spread."""
     title = "An estimate: the friction of a little water makes a can slower than an empty one"
     subtitle = f"12-oz can of {1e3 * CAN.mass:.3g} g with water, let go with a level surface; no measurement is fitted"
-    with chart(path, 1, 2, width=10, height=6.6, title=title, subtitle=subtitle) as (inclines, spread):
+    with chart(path, 1, 2, width=10, height=6.6, title=title, subtitle=subtitle) as (
+        inclines,
+        spread,
+    ):
         gentle = math.radians(_INCLINES[0])
         free = [water_in(float(volume), gentle, friction=0.0) for volume in _VOLUMES]
         footnote = [scene.acceleration() / (scene.gravity * math.sin(gentle)) for scene in free]
@@ -119,7 +132,12 @@ def draw_first_metre(path: pathlib.Path) -> None:
             axes.axvspan(_VOLUMES[0], puddle(capillary_length()), color="#EFEFEF", zorder=0)
             axes.axhline(0.5, **REFERENCE)
             axes.axhline(1.0, **REFERENCE)
-            axes.plot(_VOLUMES, footnote, label="without friction, beer that does not swing: footnote 4", **THEORY)
+            axes.plot(
+                _VOLUMES,
+                footnote,
+                label="without friction, beer that does not swing: footnote 4",
+                **THEORY,
+            )
             axes.set(xscale="log", xlim=(_VOLUMES[0], 400), ylim=(0.27, 1.08))
             marks = (1, 3, 10, 30, 100, 350)
             axes.set_xticks(marks, map(str, marks))
@@ -132,25 +150,55 @@ def draw_first_metre(path: pathlib.Path) -> None:
                 named = f"MuJoCo: friction of water, {degrees:g}°"
                 inclines.plot(_VOLUMES, np.where(lump, mean, np.nan), color=COLOURS[0], label=named)
             theory = [water_in(volume, incline) for volume in _FEW]
-            exactly = [over_first_metre(exact(scene, times_of(scene), -incline)) for scene in theory]
-            inclines.plot(_FEW, exactly, ".", color="black", markersize=4, label="exact theory of the same")
+            exactly = [
+                over_first_metre(exact(scene, times_of(scene), -incline)) for scene in theory
+            ]
+            inclines.plot(
+                _FEW, exactly, ".", color="black", markersize=4, label="exact theory of the same"
+            )
         mean, lump = _simulated(gentle)
         most, least = _simulated(gentle, 1 / SPREAD)[0], _simulated(gentle, SPREAD)[0]
         band = f"the friction divided or multiplied by {SPREAD:g}"
-        spread.fill_between(_VOLUMES, least, most, color=COLOURS[5], alpha=0.3, linewidth=0, label=band)
+        spread.fill_between(
+            _VOLUMES, least, most, color=COLOURS[5], alpha=0.3, linewidth=0, label=band
+        )
         spread.plot(_VOLUMES, mean, **_BEYOND)
         spread.plot(_VOLUMES, np.where(lump, mean, np.nan), color=COLOURS[0])
         with_air = _simulated(gentle, 1.0, DRAG)[0]
-        spread.plot(_VOLUMES, with_air, "--", color=COLOURS[1], linewidth=1.2, label="MuJoCo: with the air as well, 2°")
+        spread.plot(
+            _VOLUMES,
+            with_air,
+            "--",
+            color=COLOURS[1],
+            linewidth=1.2,
+            label="MuJoCo: with the air as well, 2°",
+        )
         ylabel = "mean acceleration over the first metre / g sin α"
-        inclines.set(xlabel="water in the can [mL]", ylabel=ylabel, title="On three inclines, without air")
-        spread.set(xlabel="water in the can [mL]", ylabel=ylabel, title=f"How sure it is, at {in_degrees(gentle)}")
+        inclines.set(
+            xlabel="water in the can [mL]", ylabel=ylabel, title="On three inclines, without air"
+        )
+        spread.set(
+            xlabel="water in the can [mL]",
+            ylabel=ylabel,
+            title=f"How sure it is, at {in_degrees(gentle)}",
+        )
         for axes in (inclines, spread):
             axes.plot([], [], label=_TOO_FAST, **_BEYOND)
         inclines.axvline(_ROSCH, ymax=0.6, linestyle="--", **REFERENCE)
         note(inclines, "Rosch: slower near 10 mL", (_ROSCH, 0.38), (6, 0))
-        note(inclines, "Jackson et al.: a nearly full can comes near g sin α", (400, 1.035), (0, 0), ha="right")
-        note(inclines, "Jackson et al.: a nearly empty can\nis slower than ½ g sin α", (0.33, 0.33), (0, 0))
+        note(
+            inclines,
+            "Jackson et al.: a nearly full can comes near g sin α",
+            (400, 1.035),
+            (0, 0),
+            ha="right",
+        )
+        note(
+            inclines,
+            "Jackson et al.: a nearly empty can\nis slower than ½ g sin α",
+            (0.33, 0.33),
+            (0, 0),
+        )
         steepest_first = ", ".join(f"{each:g}°" for each in _INCLINES[::-1])
         note(inclines, f"from above: {steepest_first}", (400, 0.57), (0, 0), ha="right")
         note(inclines, "hoop: ½", (400, 0.5), (0, 7), ha="right")
@@ -163,12 +211,15 @@ def draw_liquids(path: pathlib.Path) -> None:
     """Draw the speed of half-full cans with real liquids over time, with their terminal speeds in this model."""
     times = np.linspace(0, 6, 601)
     scenes = {"no friction": sliding()} | {
-        name: sliding(density=LIQUIDS[name].density, damping=liquid_in(name).damping) for name in NAMES
+        name: sliding(density=LIQUIDS[name].density, damping=liquid_in(name).damping)
+        for name in NAMES
     }
     title = "From frictionless to frozen: a lump of liquid comes to a terminal speed"
     subtitle = f"half-full massless can, incline {in_degrees(INCLINE)}; let go with a level surface; lines by MuJoCo"
     with chart(path, 1, 2, width=10, height=5.6, title=title, subtitle=subtitle) as (fast, slow):
-        for (name, scene), colour in zip((scenes | {"ice": frozen()}).items(), _PAINTS, strict=True):
+        for (name, scene), colour in zip(
+            (scenes | {"ice": frozen()}).items(), _PAINTS, strict=True
+        ):
             run = let_go(scene, times)
             truth = exact(scene, times[::50], -INCLINE)
             real = name in NAMES
@@ -178,7 +229,9 @@ def draw_liquids(path: pathlib.Path) -> None:
                 if not lump.all():
                     axes.plot(times, run.u_dot, **(_BEYOND | {"color": colour}))
                 axes.plot(times, np.where(lump, run.u_dot, np.nan), color=colour, label=name)
-                axes.plot(truth.time, truth.u_dot, ".", color="black", markersize=4, label="exact theory")
+                axes.plot(
+                    truth.time, truth.u_dot, ".", color="black", markersize=4, label="exact theory"
+                )
                 if real and lump.all():
                     axes.axhline(scene.terminal_speed(), color=colour, linestyle="--", linewidth=1)
             if not lump.all():
@@ -186,7 +239,9 @@ def draw_liquids(path: pathlib.Path) -> None:
         fast.plot([], [], "--", color=GREY, linewidth=1, label="terminal speed")
         fast.plot([], [], label=_TOO_FAST, **(_BEYOND | {"color": GREY}))
         ylabel, closer = "speed of the can down the incline [m/s]", "The slow ones, seen closer"
-        fast.set(xlabel="time t [s]", ylabel=ylabel, title="All of them", xlim=(0, 6), ylim=(-0.3, 5))
+        fast.set(
+            xlabel="time t [s]", ylabel=ylabel, title="All of them", xlim=(0, 6), ylim=(-0.3, 5)
+        )
         slow.set(xlabel="time t [s]", ylabel=ylabel, title=closer, xlim=(0, 2), ylim=(-0.2, 0.6))
         name_below([fast, slow], 5)
 

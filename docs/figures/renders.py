@@ -17,5 +17,12 @@ for name, film in FILMS.items():
     target = pathlib.Path(sys.argv[1]) / f"{name}.webp"
     with files.atomic_write(target) as temporary:  # at 55, letters are sharp
         first.save(
-            temporary, "WEBP", save_all=True, append_images=others, duration=1000 // FPS, loop=0, quality=55, method=4
+            temporary,
+            "WEBP",
+            save_all=True,
+            append_images=others,
+            duration=1000 // FPS,
+            loop=0,
+            quality=55,
+            method=4,
         )

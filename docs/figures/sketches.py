@@ -32,7 +32,13 @@ def arrow(
     **more: str | float,
 ) -> None:
     """Draw an arrow."""
-    look = {"arrowstyle": style, "color": colour, "shrinkA": 0, "shrinkB": 0, "linewidth": 1.4} | more
+    look = {
+        "arrowstyle": style,
+        "color": colour,
+        "shrinkA": 0,
+        "shrinkB": 0,
+        "linewidth": 1.4,
+    } | more
     axes.annotate("", tuple(end), tuple(start), arrowprops=look)
 
 
@@ -47,7 +53,9 @@ def can(axes: Axes, half_angle: float, turned: float) -> None:
     axes.plot(0, 0, "o", color="black", markersize=4)
 
 
-def write(axes: Axes, text: str, place: tuple[float, float], colour: str = "black", **style: str) -> None:
+def write(
+    axes: Axes, text: str, place: tuple[float, float], colour: str = "black", **style: str
+) -> None:
     """Write a text at a place."""
     axes.text(*place, text, color=colour, **({"ha": "center", "va": "center"} | style))
 
@@ -57,7 +65,9 @@ def draw_rolling() -> None:
     with chart(HERE / "rolling", 1, 3, 11, 4.2) as (reduced, equality, contact):
         for axes, name in ((reduced, "reduced"), (equality, "equality"), (contact, "contact")):
             can(axes, math.pi / 2, math.radians(-50))
-            axes.plot([-1.6, 1.6], [-1, -1], color="black" if axes is contact else "#C4C4C4", linewidth=2)
+            axes.plot(
+                [-1.6, 1.6], [-1, -1], color="black" if axes is contact else "#C4C4C4", linewidth=2
+            )
             axes.set(xlim=(-1.65, 1.65), ylim=(-2.05, 1.5))
             axes.set_title(name, loc="center", fontweight="bold")
         fixed, site = np.array([0, 0.75]), on_circle(math.radians(-50), 0.75)
@@ -69,10 +79,20 @@ def draw_rolling() -> None:
         write(reduced, "fixed point", (0.75, 1.0), GREY, ha="left", fontsize="small")
         reduced.plot([0.05, 0.72], [0.77, 0.98], color=GREY, linewidth=0.8)
         write(reduced, "point of\nthe can", (-1.1, -0.62), GREY, ha="right", fontsize="small")
-        write(reduced, "no constraint: the armature of the\ntendon has the inertia of rolling", (0, -1.6))
+        write(
+            reduced,
+            "no constraint: the armature of the\ntendon has the inertia of rolling",
+            (0, -1.6),
+        )
         arrow(equality, np.array([-0.2, 0]), np.array([1.45, 0]), LETTER)
         write(equality, "u", (1.3, 0.17), LETTER)
-        arrow(equality, np.array([-0.42, 1.1]), np.array([0.55, 1.05]), LETTER, connectionstyle="arc3,rad=-0.3")
+        arrow(
+            equality,
+            np.array([-0.42, 1.1]),
+            np.array([0.55, 1.05]),
+            LETTER,
+            connectionstyle="arc3,rad=-0.3",
+        )
         write(equality, "turn", (0.1, 1.38), LETTER)
         write(equality, "two joints and one equation\nbetween them: u = a · turn", (0, -1.6))
         arrow(contact, np.array([0, -1.75]), np.array([0, -1.02]), FORCE)
@@ -88,8 +108,12 @@ def draw_layer() -> None:
         half = math.radians(62)
         can(axes, half, math.radians(-14))
         angles = math.radians(-14) + np.linspace(half, -half, 181)
-        thick = 0.035 + 0.22 * np.sqrt(np.linspace(0, 1, 181))  # grows with the root of the distance
-        inner = np.array([on_circle(angle, 1 - depth) for angle, depth in zip(angles, thick, strict=True)])
+        thick = 0.035 + 0.22 * np.sqrt(
+            np.linspace(0, 1, 181)
+        )  # grows with the root of the distance
+        inner = np.array(
+            [on_circle(angle, 1 - depth) for angle, depth in zip(angles, thick, strict=True)]
+        )
         layer = np.concatenate([on_circle(angles), inner[::-1]])
         (shown,) = axes.fill(*layer.T, color=COLOURS[5], alpha=0.6, linewidth=0)
         shown.set_clip_path(Polygon(on_circle(angles), transform=axes.transData))
@@ -106,11 +130,26 @@ def draw_layer() -> None:
         )
         write(axes, "w", (0.62, 0.12), FORCE)
         for place, target, text in (
-            ((1.5, -0.95), on_circle(math.radians(30), 0.97), "the layer begins here,\nwhere the wall dips in"),
-            ((-1.55, -0.95), on_circle(math.radians(-60), 0.86), "and is thickest here:\n√(νX/U) with U = aw"),
+            (
+                (1.5, -0.95),
+                on_circle(math.radians(30), 0.97),
+                "the layer begins here,\nwhere the wall dips in",
+            ),
+            (
+                (-1.55, -0.95),
+                on_circle(math.radians(-60), 0.86),
+                "and is thickest here:\n√(νX/U) with U = aw",
+            ),
             ((1.55, 0.45), on_circle(math.radians(-5), 0.5), "the liquid above it\nlies still"),
         ):
-            axes.annotate(text, target, place, ha="center", va="center", arrowprops={"arrowstyle": "-", "color": GREY})
+            axes.annotate(
+                text,
+                target,
+                place,
+                ha="center",
+                va="center",
+                arrowprops={"arrowstyle": "-", "color": GREY},
+            )
         axes.set(xlim=(-2.2, 2.2), ylim=(-1.35, 1.1))
 
 

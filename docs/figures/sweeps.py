@@ -47,9 +47,15 @@ def draw_outcomes(friction: float = 0.5, duration: float = 2.0) -> None:
     def parts(scene: Scene) -> float:
         return float(-exact(scene, np.linspace(0, duration, SAMPLES), 0.0).forces.normal.min())
 
-    part, slip, down = (np.array([border(each, fill) for fill in fills]) for each in (parts, slips, rolls_down))
+    part, slip, down = (
+        np.array([border(each, fill) for fill in fills]) for each in (parts, slips, rolls_down)
+    )
     near = math.radians(0.01)
-    seen = part < STEEPEST, slip < part - near, down <= part + near  # beyond parting, there is nothing to see
+    seen = (
+        part < STEEPEST,
+        slip < part - near,
+        down <= part + near,
+    )  # beyond parting, there is nothing to see
     names = [
         "rocks",
         "rolls down",
@@ -61,7 +67,9 @@ def draw_outcomes(friction: float = 0.5, duration: float = 2.0) -> None:
         colour(axes, np.degrees(inclines), fills, found, "incline [°]", "fill")
         for line, shown in zip((part, slip, down), seen, strict=True):
             axes.plot(np.degrees(np.where(shown, line, np.nan)), fills, **LINE)
-        name_below([axes], 3, [*patches(names), Line2D([], [], label="borders by exact theory", **LINE)])
+        name_below(
+            [axes], 3, [*patches(names), Line2D([], [], label="borders by exact theory", **LINE)]
+        )
 
 
 def border(excess: Callable[[Scene], float], fill: float) -> float:
@@ -88,21 +96,34 @@ def draw_periods() -> None:
         of_scene = amplitudes[swings[row]]
         # Over 4 s, as beside the separatrix a swing takes twice as long as small ones.
         swept = mjbeer.sweep(
-            frozen, 4.0, scene.equilibrium() + of_scene, tolerance=1e-6, quantity="period", incline=scene.incline
+            frozen,
+            4.0,
+            scene.equilibrium() + of_scene,
+            tolerance=1e-6,
+            quantity="period",
+            incline=scene.incline,
         )
         measured[row, swings[row]] = swept["period"]
         theory[row, swings[row]] = [scene.period(amplitude) for amplitude in of_scene]
     subtitle = "half-full massless can, beer frozen, released at rest below its equilibrium"
-    with chart(HERE / "sweep-periods", 1, 1, 8, 5.5, "The period of a frozen can", subtitle) as (axes,):
+    with chart(HERE / "sweep-periods", 1, 1, 8, 5.5, "The period of a frozen can", subtitle) as (
+        axes,
+    ):
         tilts, swing = np.degrees(inclines), np.degrees(amplitudes)
-        mesh = axes.pcolormesh(tilts, swing, measured.T, cmap="cividis", shading="nearest", rasterized=True)
-        lines = axes.contour(tilts, swing, theory.T, (0.5, 0.55, 0.6, 0.7, 0.8, 1.0), colors="white", linewidths=1)
+        mesh = axes.pcolormesh(
+            tilts, swing, measured.T, cmap="cividis", shading="nearest", rasterized=True
+        )
+        lines = axes.contour(
+            tilts, swing, theory.T, (0.5, 0.55, 0.6, 0.7, 0.8, 1.0), colors="white", linewidths=1
+        )
         axes.clabel(lines, fmt=lambda period: f"{period:g} s")
         axes.plot(tilts, np.degrees(largest), **LINE)
         axes.set(xlabel="incline [°]", ylabel="amplitude [°]", xlim=(0, tilts[-1]), ylim=(0, 180))
         axes.grid(visible=False)
         axes.figure.colorbar(mesh, ax=axes, label="period by MuJoCo [s]")
-        theory_line = Line2D([], [], label="by exact theory: the largest swing, and periods in white", **LINE)
+        theory_line = Line2D(
+            [], [], label="by exact theory: the largest swing, and periods in white", **LINE
+        )
         name_below([axes], 1, [theory_line])
 
 
@@ -118,10 +139,18 @@ def draw_damping(duration: float = 4.0) -> None:
         motion = exact(can(incline, damping), np.linspace(0, duration, 401), -incline)
         return float(np.abs(motion.phi).max() > math.pi) - 0.5
 
-    swept = [mjbeer.sweep(can, duration, -tilt, tolerance=1e-6, damping=dampings, incline=tilt) for tilt in inclines]
-    found = np.array([np.abs(each["phi"].values) > math.pi for each in swept]).T  # once over the top, for good
+    swept = [
+        mjbeer.sweep(can, duration, -tilt, tolerance=1e-6, damping=dampings, incline=tilt)
+        for tilt in inclines
+    ]
+    found = np.array(
+        [np.abs(each["phi"].values) > math.pi for each in swept]
+    ).T  # once over the top, for good
     shown = dampings[::2]  # exact motions of a stiff can take a second
-    borders = [bisect(beyond, inclines[0], inclines[-1], (each,), xtol=math.radians(0.025)) for each in shown]
+    borders = [
+        bisect(beyond, inclines[0], inclines[-1], (each,), xtol=math.radians(0.025))
+        for each in shown
+    ]
     subtitle = f"half-full can of sheet metal, let go with its surface level, {duration:g} s"
     with chart(HERE / "sweep-damping", 1, 1, 8, 5.5, "What a damped can does", subtitle) as (axes,):
         axes.set_xscale("log")
@@ -132,13 +161,21 @@ def draw_damping(duration: float = 4.0) -> None:
             Line2D([], [], label="border by exact theory", **LINE),
             Line2D([], [], label="steepest with steady rolling", linestyle="--", **LINE),
         ]
-        name_below([axes], 2, [*patches(["the load stays below", "the load is carried over the top"]), *lines])
+        name_below(
+            [axes],
+            2,
+            [*patches(["the load stays below", "the load is carried over the top"]), *lines],
+        )
 
 
-def colour(axes: Axes, x: np.ndarray, y: np.ndarray, found: np.ndarray, across: str, up: str) -> None:
+def colour(
+    axes: Axes, x: np.ndarray, y: np.ndarray, found: np.ndarray, across: str, up: str
+) -> None:
     """Colour the cells of a map by what was found in them, shape (x, y)."""
     shades = ListedColormap(SHADES[: found.max() + 1])
-    axes.pcolormesh(x, y, found.T, cmap=shades, vmin=0, vmax=shades.N - 1, shading="nearest", rasterized=True)
+    axes.pcolormesh(
+        x, y, found.T, cmap=shades, vmin=0, vmax=shades.N - 1, shading="nearest", rasterized=True
+    )
     axes.set(xlabel=across, ylabel=up, xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
     axes.grid(visible=False)
 

@@ -21,7 +21,10 @@ T = TypeVar("T")
 # The domain is that of cans: the smallest and the largest value of each quantity.
 SIZE = (1e-3, 1e2)  # radius and length of a can [m]
 MASS = (1e-9, 1e4)  # [kg]; a can may also have none
-RATIO = (1e-3 * (1 - 1e-12), 1e3 * (1 + 1e-12))  # mass of a can divided by that of its load; 1e-12 is for rounding
+RATIO = (
+    1e-3 * (1 - 1e-12),
+    1e3 * (1 + 1e-12),
+)  # mass of a can divided by that of its load; 1e-12 is for rounding
 LARGEST_INERTIA = RATIO[1]  # of a can or a load, divided by its mass and the radius squared
 INCLINE = (-math.radians(85), math.radians(85))  # [rad]
 FILL = (0.01, 1.0)  # depth of beer divided by the can's diameter
@@ -43,7 +46,9 @@ def number(name: str, value: Any, unit: str = "") -> float:
     return result
 
 
-def within(name: str, value: Any, lowest: float, highest: float, unit: str = "", zero: bool = False) -> float:
+def within(
+    name: str, value: Any, lowest: float, highest: float, unit: str = "", zero: bool = False
+) -> float:
     """Return `value` as a float from `lowest` to `highest`, or 0 if `zero` is allowed as well."""
     result = number(name, value, unit)
     if lowest <= result <= highest or (zero and result == 0):

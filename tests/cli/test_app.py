@@ -1,10 +1,11 @@
-"""The command line: what goes to which stream, with which exit status it ends, and what is refused in one line."""
+"""The command line: streams, exit statuses, and what is refused in one line."""
 
 import json
 import math
 import os
 import pathlib
 import re
+from collections.abc import Iterable
 from importlib.metadata import version
 
 import numpy as np
@@ -12,7 +13,7 @@ import pytest
 
 import mjbeer
 from mjbeer import frozen, hoop, pendulum, simulate, sliding
-from mjbeer.cli.app import COMMANDS, OF_SCENES, main
+from mjbeer.cli.app import COMMANDS, SCENES_OF, main
 from mjbeer.cli.motions import Summary
 from mjbeer.theory.liquid import liquid_in
 from mjbeer.theory.trajectory import csv
@@ -24,12 +25,14 @@ SCENES = {"sliding": sliding(), "frozen": frozen(), "pendulum": pendulum(), "hoo
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_simulate_writes_the_trajectory(name: str, tmp_path: pathlib.Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_simulate_writes_the_trajectory(
+    name: str, tmp_path: pathlib.Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     """Brackets in a file's name are markup to the library that prints."""
     target = tmp_path / "motion[red][" / "c].csv"
     target.parent.mkdir()
-    words = ["simulate", name, "--phi0", "57", "--phi-dot0", "-2e1", "--duration", "0.1", f"--output={target}"]
-    assert main(words) == 0
+    start = ["--phi0", "57", "--phi-dot0", "-2e1"]
+    assert main(["simulate", name, *start, "--duration", "0.1", f"--output={target}"]) == 0
     run = simulate(SCENES[name], 0.1, math.radians(57), math.radians(-20))
     assert target.read_text() == csv(run)
     out, err = capsys.readouterr()
@@ -45,12 +48,14 @@ def test_standard_output_has_the_csv_or_the_json_alone(
     words = ["simulate", "frozen", "--phi0", "180", "--duration", "1", "--friction", "0.6"]
     run = simulate(frozen(), 1.0, math.pi)
     summary = Summary(run, 0.6)
-    told = [*(f"model does not hold: {warning}" for warning in run.warnings), f"note: {summary.notes[0]}"]
+    messages = [f"model does not hold: {warning}" for warning in run.warnings]
+    messages += [f"note: {note}" for note in summary.notes]
+    assert len(messages) > 1
     for option, expected in ((["--output", "-"], csv(run)), (["--json"], summary.json())):
         assert main([*words, *option]) == 0
         out, err = capsys.readouterr()
         assert out == expected
-        assert err.splitlines()[-len(told) :] == told
+        assert err.splitlines()[-len(messages) :] == messages
     assert not os.listdir(tmp_path)
 
 
@@ -61,19 +66,40 @@ def test_standard_output_has_the_csv_or_the_json_alone(
         ("simlate sliding", "argument COMMAND: invalid choice: 'simlate' (choose from "),
         ("simulate", "the following arguments are required: SCENE; see `mjbeer simulate --help`"),
         ("simulate standing", "argument SCENE: invalid choice: 'standing' (choose from "),
-        ("simulate sliding --tol 1e-6", "--tol is not understood here; see `mjbeer simulate sliding --help`"),
+        (
+            "simulate sliding --tol 1e-6",
+            "--tol is not understood here; see `mjbeer simulate sliding --help`",
+        ),
         ("simulate sliding --phi0 1,2", "argument --phi0: invalid angle value: '1,2'"),
-        ("fit can.csv sliding --phi0 up", "phi0 must be level, free, or a number [degrees], got 'up'"),
+        (
+            "fit can.csv sliding --phi0 up",
+            "phi0 must be level, free, or a number [degrees], got 'up'",
+        ),
         ("benchmark slding", "scene must be one of 'sliding', 'sliding-metal', "),
         ("simulate sliding --incline 100", "incline must be between -90 and 90 [degrees], got 100"),
         ("sweep frozen --incline 1:100:3", "incline must be between -90 and 90 [degrees], got 100"),
-        ("simulate sliding --phi0 inf", "argument --phi0: it must be a finite number [degrees], got inf"),
+        (
+            "simulate sliding --phi0 inf",
+            "argument --phi0: it must be a finite number [degrees], got inf",
+        ),
         ("simulate frozen --timestep 0", "timestep must be between 1e-07 and 10 [s], got 0.0"),
-        ("simulate frozen --timestep 0.5 --integrator Euler --phi0 5e5 --duration 900", "the run diverged at t ="),
+        (
+            "simulate frozen --timestep 0.5 --integrator Euler --phi0 5e5 --duration 900",
+            "the run diverged at t =",
+        ),
         ("render frozen --output film.avi", "the file's name must end in .mp4, got 'film.avi'"),
-        ("simulate frozen --json --output -", "standard output takes one of them: the JSON, or the CSV of --output -"),
-        ("sweep frozen", "a plot needs one or two options with several values, got 0: write .csv or .nc"),
-        ("sweep frozen --fill 0.2,0.3 --output map.jpg", "the file's name must end in .png or .svg or .csv or .nc"),
+        (
+            "simulate frozen --json --output -",
+            "standard output takes one of them: the JSON, or the CSV of --output -",
+        ),
+        (
+            "sweep frozen",
+            "a plot needs one or two options with several values, got 0: write .csv or .nc",
+        ),
+        (
+            "sweep frozen --fill 0.2,0.3 --output map.jpg",
+            "the file's name must end in .png or .svg or .csv or .nc",
+        ),
     ],
 )
 def test_what_is_not_allowed_is_one_line_and_exit_status_2(
@@ -93,14 +119,20 @@ def test_what_is_not_allowed_is_one_line_and_exit_status_2(
 
 
 def test_the_version_and_the_help_of_each_command(capsys: pytest.CaptureFixture[str]) -> None:
-    of_scenes = [(name, *["FILE"] * (name == "fit"), scene) for name in OF_SCENES for scene in OF_SCENES[name]]
-    for words in ((), *((name,) for name in COMMANDS), *of_scenes):
+    listed: dict[str, Iterable[str]] = {"": COMMANDS}  # what the help of some words lists
+    for command in COMMANDS:
+        scenes = SCENES_OF.get(command, {})
+        listed[command] = scenes
+        before_scene = f"{command} FILE" if command == "fit" else command
+        listed |= {f"{before_scene} {scene}": () for scene in scenes}
+    for words, names in listed.items():
         with pytest.raises(SystemExit) as ended:
-            main([*words, "--help"])
+            main([*words.split(), "--help"])
+        out = capsys.readouterr().out
         assert ended.value.code == 0
-        assert " ".join(["usage: mjbeer", *words]) in (told := capsys.readouterr().out)
-        named = OF_SCENES.get(words[-1], ()) if words else COMMANDS
-        assert all(re.search(rf"^    {each}\s", told, re.MULTILINE) for each in named)
+        assert f"usage: mjbeer {words}".rstrip() in out
+        for name in names:
+            assert re.search(rf"^    {name}\s", out, re.MULTILINE)
     with pytest.raises(SystemExit):
         main(["--version"])
     assert capsys.readouterr().out == f"mjbeer {version('mjbeer')}\n"
@@ -113,23 +145,43 @@ def test_no_command_line_loads_what_draws_before_it_is_needed() -> None:
     assert run(["simulate", "frozen", "--phi0", "x"], code)[1] == "set()\n"
 
 
-@pytest.mark.parametrize(("angle", "noted"), [("3.14159", True), ("-1.571", True), ("3.14", False), ("60", False)])
-def test_an_angle_that_looks_like_radians_is_noted(angle: str, noted: bool, capsys: pytest.CaptureFixture[str]) -> None:
+@pytest.mark.parametrize(
+    ("angle", "noted"), [("3.14159", True), ("-1.571", True), ("3.14", False), ("60", False)]
+)
+def test_an_angle_that_looks_like_radians_is_noted(
+    angle: str, noted: bool, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert main(["simulate", "frozen", "--duration", "0.01", "--phi0", angle]) == 0
     assert (f"note: phi0 = {angle} is taken as degrees" in capsys.readouterr().err) == noted
 
 
-def test_what_a_liquid_uses_is_told_and_what_speaks_against_it(capsys: pytest.CaptureFixture[str]) -> None:
-    words = ["simulate", "liquid", "--liquid", "olive oil", "--fill", "0.7", "--phi0", "20", "--duration", "1"]
+def test_what_a_liquid_uses_is_told_and_what_speaks_against_it(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    words = [
+        "simulate",
+        "liquid",
+        "--liquid",
+        "olive oil",
+        "--fill",
+        "0.7",
+        "--phi0",
+        "20",
+        "--duration",
+        "1",
+    ]
     assert main([*words, "--json"]) == 0
     out, err = capsys.readouterr()
-    told = liquid_in("olive oil", fill=0.7)
-    assert err.startswith(f"{told}\nnote: olive oil as one lump is an order of magnitude only")
+    assumed = liquid_in("olive oil", fill=0.7)
+    assert err.startswith(f"{assumed}\nnote: olive oil as one lump is an order of magnitude only")
     run = mjbeer.simulate(mjbeer.liquid("olive oil", fill=0.7), 1, np.radians(20))
     assert json.loads(out)["u at the end [m]"] == run.u[-1]
-    assert err.splitlines()[2:] == [f"model does not hold: {warning}" for warning in run.warnings] != []
+    assert run.warnings
+    assert err.splitlines()[2:] == [f"model does not hold: {warning}" for warning in run.warnings]
 
 
 def test_an_equation_that_is_not_solved_is_told(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["simulate", "frozen", "--duration", "0.5", "--integrator", "Euler", "--timestep", "4e-3"]) == 0
-    assert capsys.readouterr().err.startswith("equations not solved: energy or momentum drift like an error of ")
+    words = "simulate frozen --duration 0.5 --integrator Euler --timestep 4e-3"
+    assert main(words.split()) == 0
+    message = "equations not solved: energy or momentum drift like an error of "
+    assert capsys.readouterr().err.startswith(message)

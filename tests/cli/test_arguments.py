@@ -1,4 +1,4 @@
-"""What the command line says about a scene and a run: units, defaults, and that all of it arrives."""
+"""What the command line says about a scene and a run: units, defaults, and that it arrives."""
 
 import inspect
 import math
@@ -9,25 +9,40 @@ import numpy as np
 import pytest
 
 from mjbeer import Can, build, frozen, render, simulate
-from mjbeer.cli.app import OF_SCENES, main, parse
-from mjbeer.cli.arguments import SCENES, angle, angles, numbers, of_scene, scene, start, steps
+from mjbeer.cli.app import SCENES_OF, main, parse
+from mjbeer.cli.arguments import SCENES, angle, angles, numbers, scene, scene_options, start, steps
 from mjbeer.model.export import export
 
 OWN: dict[str, Any] = {
-    "name": "honey", "incline": math.radians(-20), "fill": 0.3, "can": Can.sheet_metal(0.04, 0.2), "density": 900.0,
-    "viscosity": 1e-5, "gravity": 1.6, "damping": 1e-3, "drag": 1e-4, "wheel_mass": 0.5, "hoop_mass": 0.4,
-    "load_mass": 0.6, "offset": 0.03, "radius": 0.04, "length": 0.2,
-}  # fmt: skip
+    "name": "honey",
+    "incline": math.radians(-20),
+    "fill": 0.3,
+    "can": Can.sheet_metal(0.04, 0.2),
+    "density": 900.0,
+    "viscosity": 1e-5,
+    "gravity": 1.6,
+    "damping": 1e-3,
+    "drag": 1e-4,
+    "wheel_mass": 0.5,
+    "hoop_mass": 0.4,
+    "load_mass": 0.6,
+    "offset": 0.03,
+    "radius": 0.04,
+    "length": 0.2,
+}
+"""A value of its own for each parameter of a scene."""
 PURE_NUMBERS = {"--fill", "--friction", "--speed", "--damping-ratio"}
 
 
 def test_help_states_the_unit_of_every_number() -> None:
-    for command, scenes in OF_SCENES.items():
-        for name, meaning, default, kind in (option for of in scenes for option in of_scene(of, command)):
-            if kind in (angle, angles):
-                assert "[degrees" in meaning, name
-            elif kind in (float, numbers) and default is not False:
-                assert name in PURE_NUMBERS or re.search(r"\[\S", meaning), name
+    for command, scenes in SCENES_OF.items():
+        for name in scenes:
+            for option in scene_options(name, command):
+                if option.read in (angle, angles):
+                    assert "[degrees" in option.help, option.name
+                elif option.read in (float, numbers) and not (option.flag or option.choices):
+                    has_unit = re.search(r"\[\S", option.help)
+                    assert has_unit or option.name in PURE_NUMBERS, option.name
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -35,28 +50,34 @@ def test_a_scene_is_that_of_python(name: str) -> None:
     """With its defaults, and with a value of its own for each parameter."""
     assert scene(parse(["simulate", name])) == SCENES[name]()
     values = OWN | {"can": "metal", "liquid": "honey", "incline": -20}
-    names = [each.name for each in of_scene(name, "simulate") if spelt(each.name) in values]
-    words = [f"{each}={values[spelt(each)]}" for each in names]
-    meant = {each: OWN[each] for each in inspect.signature(SCENES[name]).parameters}
-    assert scene(parse(["simulate", name, *words])) == SCENES[name](**meant)
-
-
-def spelt(option: str) -> str:
-    """The name in Python."""
-    return option.removeprefix("--").replace("-", "_")
+    words = []
+    for option in scene_options(name, "simulate"):
+        parameter = option.name.removeprefix("--").replace("-", "_")
+        if parameter in values:
+            words.append(f"{option.name}={values[parameter]}")
+    arguments = {
+        parameter: OWN[parameter] for parameter in inspect.signature(SCENES[name]).parameters
+    }
+    assert scene(parse(["simulate", name, *words])) == SCENES[name](**arguments)
 
 
 def test_the_options_of_the_run_arrive() -> None:
     words = (
-        "simulate frozen --phi0 -30 --phi-dot0 180 --duration 0.5 --rolling contact --integrator discrete "
+        "simulate frozen --phi0 -30 --phi-dot0 180 --duration 0.5 --rolling contact --integrator "
+        "discrete "
         "--timestep 2e-3 --tolerance 1e-8 --friction 0.4 --output motion.csv"
     )
     given = parse(words.split())
     assert start(given) == {"phi0": math.radians(-30), "phi_dot0": math.pi}
     assert steps(given) == {
-        "rolling": "contact", "integrator": "discrete", "timestep": 2e-3, "tolerance": 1e-8, "friction": 0.4,
-    }  # fmt: skip
-    assert (given.duration, str(given.output)) == (0.5, "motion.csv")
+        "rolling": "contact",
+        "integrator": "discrete",
+        "timestep": 2e-3,
+        "tolerance": 1e-8,
+        "friction": 0.4,
+    }
+    assert given.duration == 0.5
+    assert str(given.output) == "motion.csv"
 
 
 @pytest.mark.parametrize(
@@ -72,7 +93,8 @@ def test_the_defaults_are_those_of_python(words: str, meant: object) -> None:
     given = parse(words.split())
     for name, parameter in inspect.signature(meant).parameters.items():
         if hasattr(given, name) and name not in ("scene", "phi0", "output", "duration"):
-            assert getattr(given, name) in (parameter.default, None), name  # which is left to Python's default
+            # Which is left to Python's default.
+            assert getattr(given, name) in (parameter.default, None), name
 
 
 def test_the_default_duration_is_that_of_python() -> None:
@@ -81,13 +103,17 @@ def test_the_default_duration_is_that_of_python() -> None:
 
 
 def test_a_range_a_list_or_a_number() -> None:
-    given = parse(["sweep", "frozen", "--incline", "-1:1:5", "--fill", "0.1,0.2", "--phi0", "-.3e1"])
+    given = parse(
+        ["sweep", "frozen", "--incline", "-1:1:5", "--fill", "0.1,0.2", "--phi0", "-.3e1"]
+    )
     assert np.array_equal(given.incline, np.radians([-1.0, -0.5, 0.0, 0.5, 1.0]))
     assert np.array_equal(given.fill, [0.1, 0.2])
     assert given.phi0 == np.radians(-3.0)
 
 
-@pytest.mark.parametrize("text", ["", "x", "1:2", "1:2:0", "1:2:0.5", "1:2:3:4", "1,,2", "nan", "0:1:-1"])
+@pytest.mark.parametrize(
+    "text", ["", "x", "1:2", "1:2:0", "1:2:0.5", "1:2:3:4", "1,,2", "nan", "0:1:-1"]
+)
 def test_what_is_none_of_these_is_refused(text: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["sweep", "frozen", "--fill", text]) == 2
     assert "is no number, no list as 1,2,5, and no range as 1:20:39" in capsys.readouterr().err

@@ -1,4 +1,4 @@
-"""Disks, folders and streams that do not take what is written: one line that says so, exit status 2, no half file."""
+"""Disks, folders and streams that take nothing: one line, exit status 2, and no half file."""
 
 import os
 import pathlib
@@ -31,7 +31,8 @@ def little_disk() -> None:
 def test_a_full_disk_leaves_the_old_file(tmp_path: pathlib.Path) -> None:
     """Once before with room enough, for Numba writes caches the first time.
 
-    No bytecode is written: cut off in the checkout, it would end every later run (Python 3.11.2 does not notice).
+    No bytecode is written: cut off in the checkout, it would end every later run (Python 3.11.2
+    does not notice).
     """
     target = tmp_path / "motion.csv"
     words = ("simulate", *FROZEN, "--output", str(target))
@@ -46,41 +47,65 @@ def test_a_full_disk_leaves_the_old_file(tmp_path: pathlib.Path) -> None:
 
 @pytest.mark.parametrize("words", ["simulate frozen", "export frozen", "render frozen", *FOLDERS])
 def test_what_cannot_be_written_is_known_before_the_work(
-    words: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    words: str,
+    tmp_path: pathlib.Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
-    work = ["report.page.validate", "studies.benchmark.timing.conduct", "studies.stability.stability_study.conduct"]
-    work.append("drawing.video._mediapy" if words == "render frozen" else "cli.motions.trajectory_of")
-    for each in work:
-        monkeypatch.setattr(f"mjbeer.{each}", lambda *_, **__: pytest.fail("the work was begun"))
+    work = [
+        "report.page.validate",
+        "studies.benchmark.timing.run",
+        "studies.stability.stability_study.run",
+    ]
+    work.append(
+        "drawing.video._mediapy" if words == "render frozen" else "cli.motions.trajectory_of"
+    )
+    for function in work:
+        monkeypatch.setattr(
+            f"mjbeer.{function}", lambda *_, **__: pytest.fail("the work was begun")
+        )
     ending = {"export frozen": ".xml", "render frozen": ".mp4"}.get(words, "")
-    target, folder = tmp_path / "misspelt" / f"new{ending}", tmp_path / "misspelt"
+    folder = tmp_path / "misspelt"
+    target = folder / f"new{ending}"
     assert main([*words.split(), "--output", str(target)]) == 2
-    told = f"there is no folder {folder}; the nearest one that exists is {tmp_path}"
-    assert capsys.readouterr().err == f"mjbeer: cannot write {target}: {told}\n"
+    reason = f"there is no folder {folder}; the nearest one that exists is {tmp_path}"
+    assert capsys.readouterr().err == f"mjbeer: cannot write {target}: {reason}\n"
     assert not os.listdir(tmp_path)
 
 
 @pytest.mark.parametrize("command", FOLDERS)
 def test_a_folder_of_others_is_refused_before_the_work(
-    command: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    command: str,
+    tmp_path: pathlib.Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
-    for work in ("report.page.write", "studies.benchmark.timing.conduct", "studies.stability.stability_study.conduct"):
+    for work in (
+        "report.page.write",
+        "studies.benchmark.timing.run",
+        "studies.stability.stability_study.run",
+    ):
         monkeypatch.setattr(f"mjbeer.{work}", lambda *_: pytest.fail("the work was begun"))
     monkeypatch.setattr("mjbeer.paper.stories.write", lambda *_: pytest.fail("the work was begun"))
     names = ["index.html", "stories.md", "summary.md"]
     for name in names:
         (tmp_path / name).write_text("mine")
     assert main([command, "--output", str(tmp_path)]) == 2
-    told = f"`mjbeer {command}` did not write what is there (index.html, stories.md, summary.md)"
+    reason = f"`mjbeer {command}` did not write what is there (index.html, stories.md, summary.md)"
     advice = "name a new or an empty folder"
-    assert capsys.readouterr().err == f"mjbeer: cannot write to {tmp_path}: {told}: {advice}\n"
+    assert capsys.readouterr().err == f"mjbeer: cannot write to {tmp_path}: {reason}: {advice}\n"
     assert sorted(os.listdir(tmp_path)) == names
     assert all((tmp_path / name).read_text() == "mine" for name in names)
 
 
 @pytest.mark.parametrize(
     ("command", "last"),
-    [("report", "index.html"), ("benchmark", "summary.md"), ("stability", "summary.md"), ("paper", "stories.md")],
+    [
+        ("report", "index.html"),
+        ("benchmark", "summary.md"),
+        ("stability", "summary.md"),
+        ("paper", "stories.md"),
+    ],
 )
 def test_old_results_stay_if_a_command_is_interrupted_at_its_end(
     command: str, last: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
@@ -89,8 +114,8 @@ def test_old_results_stay_if_a_command_is_interrupted_at_its_end(
     stubs.validate(monkeypatch, first=1e-5)
     stubs.draw(monkeypatch)
     study = Study("mjbeer stability", {"quick": True}, {})
-    monkeypatch.setattr("mjbeer.studies.benchmark.timing.conduct", lambda *_: Benchmark.load(SHIPPED))
-    monkeypatch.setattr("mjbeer.studies.stability.stability_study.conduct", lambda *_: study)
+    monkeypatch.setattr("mjbeer.studies.benchmark.timing.run", lambda *_: Benchmark.load(SHIPPED))
+    monkeypatch.setattr("mjbeer.studies.stability.stability_study.run", lambda *_: study)
     monkeypatch.setattr("mjbeer.studies.stability.stability_maps.figures", lambda _: {})
     words = [command, "--output", str(tmp_path)]
     assert main(words) == 0

@@ -1,4 +1,4 @@
-"""Where points are in a picture: a plane across the can's axis is seen as it is, and plumb lines are plumb."""
+"""Where points are seen: a plane across the can's axis as it is, and plumb lines plumb."""
 
 import numpy as np
 import pytest
@@ -6,20 +6,35 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mjbeer import exact, frozen, hoop, sliding
-from mjbeer.drawing.camera import CAMERAS, View, circle, follow, on_incline, scale
+from mjbeer.drawing.camera import (
+    CAMERAS,
+    Camera,
+    CameraPath,
+    View,
+    circle,
+    follow,
+    on_incline,
+    scale,
+)
 from mjbeer.theory.can import RADIUS
 
 # Rounding of a dozen operations on places of up to 2000 pixels.
 ROUNDING = 2e-6
-CENTRE, METRES = np.array([0.3, -0.06, 0.1]), np.array([0.8, 0.45])
+CENTRE = np.array([0.3, -0.06, 0.1])
+METRES = np.array([0.8, 0.45])
 VIEW = View.facing(CENTRE, METRES, (1600, 900))
 PLACES = st.floats(-1, 1)
 
 
 @settings(max_examples=100, deadline=None, derandomize=True)
 @given(PLACES, PLACES, st.floats(-0.5, 2), PLACES)
-def test_across_the_axis_all_is_seen_to_scale_and_nothing_leans(x: float, z: float, y: float, other: float) -> None:
-    """2000 pixels for a metre in each direction, whatever the eye's height is; plumb lines are plumb at any depth."""
+def test_across_the_axis_all_is_seen_to_scale_and_nothing_leans(
+    x: float, z: float, y: float, other: float
+) -> None:
+    """2000 pixels for a metre in each direction, whatever the eye's height is.
+
+    Plumb lines are plumb at any depth.
+    """
     place = VIEW.pixel(CENTRE + np.array([x, 0.0, z]))
     assert place == pytest.approx([800 + 2000 * x, 450 - 2000 * z], abs=ROUNDING)
     assert VIEW.scale(CENTRE + np.array([x, 0.0, z])) == pytest.approx(2000)
@@ -32,6 +47,7 @@ def test_a_view_towards_points_just_holds_them(pixels: tuple[int, int]) -> None:
     points = np.random.default_rng(1).uniform(-1, 1, (50, 3))
     view = View.towards(np.array([0.5, -6.0, 4.0]), points, pixels, 20, margin=0.0)
     places = view.pixel(points) - [0, 20]
+    # One of the sides is full, and nothing is outside.
     assert (places > -1e-6).all()
     assert (places < np.array(pixels) + 1e-6).all()
     assert max(np.ptp(places, axis=0) / pixels) == pytest.approx(1.0)
@@ -40,7 +56,8 @@ def test_a_view_towards_points_just_holds_them(pixels: tuple[int, int]) -> None:
     assert view.axes[0][2] == 0  # upright
 
 
-WIDE, PLANE = (1280, 430), -0.06
+WIDE = (1280, 430)
+PLANE = -0.06
 TIMES = np.linspace(0, 1, 101)
 MOTIONS = {
     "rocks": exact(frozen(), TIMES, 0.0),
@@ -51,14 +68,15 @@ MOTIONS = {
 }
 
 
-def followed(name: str, camera):
+def followed(name: str, camera: Camera) -> CameraPath:
     return follow(MOTIONS[name], camera, PLANE, WIDE)
 
 
 @pytest.mark.parametrize("camera", CAMERAS)
 @pytest.mark.parametrize("name", MOTIONS)
-def test_the_can_is_in_the_picture_at_all_times(name: str, camera) -> None:
-    motion, (view, _) = MOTIONS[name], followed(name, camera)
+def test_the_can_is_in_the_picture_at_all_times(name: str, camera: Camera) -> None:
+    motion = MOTIONS[name]
+    view = followed(name, camera).view
     for time, u in zip(TIMES, motion.u, strict=True):
         centre = on_incline(motion.scene, u * scale(motion.scene), RADIUS)
         places = view(time).pixel(np.insert(centre + circle(RADIUS), 1, PLANE, axis=1))
@@ -68,8 +86,9 @@ def test_the_can_is_in_the_picture_at_all_times(name: str, camera) -> None:
 
 def test_the_camera_pans_where_the_can_would_be_small_and_else_fills_what_it_may() -> None:
     for name, stands in (("rocks", True), ("swings downhill", False), ("stays", True)):
-        view, still = followed(name, "auto")
-        assert still is stands
-        assert np.array_equal(view(0.0).eye, view(1.0).eye) is stands
+        path = followed(name, "auto")
+        assert path.still is stands
+        assert np.array_equal(path.view(0.0).eye, path.view(1.0).eye) is stands
+    view = followed("stays", "auto").view
     pixels = RADIUS * view(0.0).scale(np.array([0.0, PLANE, 0.0]))
     assert pixels == pytest.approx(WIDE[1] / 3.8, rel=1e-9)

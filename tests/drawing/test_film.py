@@ -1,24 +1,27 @@
-"""The pictures show what theory says: where beer, can and mark are, at any size and before every camera."""
+"""The pictures show what theory says of beer, can and mark, at any size."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import closing
 from functools import partial
+from typing import Any
 
 import numpy as np
 import pytest
 
 from mjbeer import Scene, Trajectory, exact, frozen, simulate, sliding
 from mjbeer.drawing.camera import View, follow, on_incline, scale
-from mjbeer.drawing.film import Film, MotionFilm, Race, Runner
-from mjbeer.drawing.overlay import HEADER, Look
+from mjbeer.drawing.film import Film, MotionFilm
+from mjbeer.drawing.overlay import HEADER
+from mjbeer.drawing.race import Race, Runner
 from mjbeer.drawing.scene import Display, Painter, coordinates
 from mjbeer.drawing.sheet import Sheet
+from mjbeer.drawing.style import FilmStyle
 from mjbeer.theory.can import RADIUS, segment
 
 pytestmark = pytest.mark.slow
 
-FIXED = Look("a title", strips=(), marks=(), camera="fixed")
+FIXED = FilmStyle("a title", strips=(), marks=(), camera="fixed")
 SIZE = (640, 360)
 
 
@@ -27,53 +30,72 @@ def motion(incline: float = 0.2) -> Trajectory:
 
 
 def still_view(run: Trajectory, pixels: tuple[int, int]) -> View:
-    """Return the view of the film of a motion without charts and marks, below its title: 1.9 radii around its can."""
-    plane = -run.scene.can.length / run.scene.can.radius * RADIUS / 2
-    return follow(run, "fixed", plane, pixels)[0](0.0)
+    """Return the view of the film of a motion without charts and marks, below its title.
 
-
-def look(scene: Scene, phis: np.ndarray, rolls: np.ndarray) -> list[Callable[[float, float, float], np.ndarray]]:
-    """What is seen of a scene with the load at some angles phi and the can at some angles of roll [rad].
-
-    That is the colour on the can's open end, at x and z in radii on axes that are turned by a tilt [rad].
+    It shows 1.9 radii around its can.
     """
-    times, rest, u = np.arange(len(phis), dtype=float), np.zeros(len(phis)), scene.can.radius * rolls
-    places = {"u": u, "phi": phis, "roll": rolls, "lift": rest}
-    rates = dict.fromkeys(("u_dot", "phi_dot", "roll_dot", "lift_dot"), rest)
-    still = Trajectory(scene=scene, phi0=phis[0], phi_dot0=0.0, time=times, **places, **rates)
+    plane = -run.scene.can.length / run.scene.can.radius * RADIUS / 2
+    return follow(run, "fixed", plane, pixels).view(0.0)
+
+
+Colours = Callable[[float, float, float], np.ndarray]
+"""Returns the colour on a can's open end, at x and z in radii on axes that are turned by a tilt
+[rad]."""
+
+
+def seen(scene: Scene, phis: np.ndarray, rolls: np.ndarray) -> list[Colours]:
+    """What is seen of a scene at some angles phi of the load and roll of the can [rad]."""
+    times = np.arange(len(phis), dtype=float)
+    rest = np.zeros(len(phis))
+    u = scene.can.radius * rolls
+    still = Trajectory(
+        scene=scene,
+        phi0=phis[0],
+        phi_dot0=0.0,
+        time=times,
+        u=u,
+        phi=phis,
+        roll=rolls,
+        lift=rest,
+        u_dot=rest,
+        phi_dot=rest,
+        roll_dot=rest,
+        lift_dot=rest,
+    )
     top = round(HEADER * Sheet(*SIZE).unit)
     view = still_view(still, (SIZE[0], SIZE[1] - top))
 
     def at(picture: np.ndarray, along: float, x: float, z: float, tilt: float) -> np.ndarray:
-        turned = np.array([x * math.cos(tilt) + z * math.sin(tilt), z * math.cos(tilt) - x * math.sin(tilt)])
+        cosine = math.cos(tilt)
+        sine = math.sin(tilt)
+        turned = np.array([x * cosine + z * sine, z * cosine - x * sine])
         right, up = on_incline(scene, along * scale(scene), RADIUS) + RADIUS * turned
         column, row = view.pixel(np.array([right, view.eye[1] + view.distance, up]))
         return picture[int(row) + top, int(column)].astype(int)
 
-    drawn = MotionFilm(lambda: still, FIXED, speed=1.0).plan().draw(times, *SIZE)
-    return [partial(at, *of) for of in zip(drawn, u, strict=True)]
+    pictures = MotionFilm(lambda: still, FIXED, speed=1.0).plan().draw(times, *SIZE)
+    return [partial(at, picture, along) for picture, along in zip(pictures, u, strict=True)]
 
 
 @pytest.mark.draws
 @pytest.mark.parametrize("fill", [0.25, 0.5, 0.8])
 def test_the_end_shows_a_circular_segment_of_beer(fill: float) -> None:
-    """Points on the can's open end: the beer's colour under the chord of eq. (32), another one over it.
+    """Points on the can's open end have the beer's colour below the chord of eq. (32) only.
+
 
     The foam, which one sees over the chord, is cream.
     """
     scene = sliding(0.3, fill=fill)
     phis = np.array([0.0, 1.0, 3.0, -2.0])
     chord = 2 * fill - 1
-    for phi, seen in zip(phis, look(scene, phis, phis + 0.1), strict=True):
+    points = np.random.default_rng(1).uniform(-0.95, 0.95, (500, 2))
+    points = [(x, z) for x, z in points if np.hypot(x, z) < 0.95 and abs(z - chord) > 0.05]
+    assert 20 < sum(z < chord for _, z in points) < len(points) - 20
+    for phi, colour in zip(phis, seen(scene, phis, phis + 0.1), strict=True):
         tilt = phi + scene.incline
-        assert is_amber(seen(0, -segment(fill).offset, tilt))
-        there = {True: 0, False: 0}
-        for x, z in np.random.default_rng(1).uniform(-0.95, 0.95, (500, 2)):
-            if np.hypot(x, z) < 0.95 and abs(z - chord) > 0.05:
-                amber = is_amber(seen(x, z, tilt))
-                assert amber == (z < chord), (phi, x, z)
-                there[amber] += 1
-        assert min(there.values()) > 20
+        assert is_amber(colour(0, -segment(fill).offset, tilt))
+        for x, z in points:
+            assert is_amber(colour(x, z, tilt)) == (z < chord), (phi, x, z)
 
 
 def is_amber(colour: np.ndarray) -> bool:
@@ -86,39 +108,57 @@ def is_amber(colour: np.ndarray) -> bool:
 def test_the_mark_turns_with_the_can(make: Callable[[float], Scene]) -> None:
     scene = make(0.3)
     rolls = np.linspace(0, 2 * np.pi, 9)[:-1]
-    for roll, seen in zip(rolls, look(scene, rolls if make is frozen else np.ones(8), rolls), strict=True):
-        marks = [seen(0, side * 1.03, roll + scene.incline) for side in (1, -1)]
-        reds = [colour[0] > 2 * colour[1] and colour[0] > 2 * colour[2] for colour in marks]
-        assert reds == [True, False], roll
+    phis = rolls if make is frozen else np.ones(8)
+    for roll, colour in zip(rolls, seen(scene, phis, rolls), strict=True):
+        tilt = roll + scene.incline
+        assert is_red(colour(0, 1.03, tilt)), roll
+        assert not is_red(colour(0, -1.03, tilt)), roll
+
+
+def is_red(colour: np.ndarray) -> bool:
+    return bool(colour[0] > 2 * colour[1] and colour[0] > 2 * colour[2])
 
 
 @pytest.mark.draws
-def test_every_picture_of_a_run_that_is_not_trusted_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A run to a tolerance has no note, even if its can leaves the incline, and a race names the can."""
-    said: list[tuple[str, ...]] = []
-    monkeypatch.setattr(Sheet, "plate", lambda _, place, lines, *others, **more: said.append(tuple(lines)))
+def test_every_picture_of_a_run_that_is_not_trusted_says_so(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A run to a tolerance has no note, even if its can leaves the incline.
+
+    A race names the can.
+    """
+    plates: list[tuple[str, ...]] = []
+
+    def keep(_: Sheet, place: np.ndarray, lines: Sequence[str], *others: Any, **more: Any) -> None:
+        plates.append(tuple(lines))
+
+    monkeypatch.setattr(Sheet, "plate", keep)
     rolls_off = simulate(frozen(), 0.9, math.pi, tolerance=1e-6)
     assert rolls_off.rolling_warnings
     wrong = simulate(frozen(), 0.9, math.pi, tolerance=1e-6)
     vars(wrong)["solver_warnings"] = ("it is off by 3 rad",)
-    told = "Not to be relied on"
+    heading = "Not to be relied on"
 
-    def notes(film: Film) -> list[tuple[str, ...]]:
-        del said[:]
+    def warnings(film: Film) -> list[tuple[str, ...]]:
+        """Draw two pictures, and return the warnings in them."""
+        plates.clear()
         assert len(list(film.plan().draw(np.array([0.1, 0.2]), *SIZE))) == 2
-        return [lines for lines in said if told in lines]
+        return [lines for lines in plates if heading in lines]
 
-    assert notes(MotionFilm(lambda: rolls_off, FIXED, speed=1.0)) == []
-    assert notes(MotionFilm(lambda: wrong, FIXED, speed=1.0)) == 2 * [(told, "it is off by 3 rad")]
+    assert warnings(MotionFilm(lambda: rolls_off, FIXED, speed=1.0)) == []
+    expected = (heading, "it is off by 3 rad")
+    assert warnings(MotionFilm(lambda: wrong, FIXED, speed=1.0)) == [expected, expected]
     cans = [Runner("one", rolls_off, (1.0, 0.0, 0.0)), Runner("other", wrong, (0.0, 0.0, 1.0))]
     race = Race("a race", lambda: cans, 0.3, 0.5, speed=1.0)
-    assert notes(race) == 2 * [(told, "other: it is off by 3 rad")]
+    expected = (heading, "other: it is off by 3 rad")
+    assert warnings(race) == [expected, expected]
 
 
 @pytest.mark.draws
 def test_before_a_still_camera_nothing_is_left_of_earlier_pictures() -> None:
     moved = motion()
-    display, view = Display([moved.scene]), still_view(moved, SIZE)
+    display = Display([moved.scene])
+    view = still_view(moved, SIZE)
     pictures = []
     for still in (False, True):
         sheet = Sheet(*SIZE)
@@ -141,8 +181,10 @@ def test_the_scenery_is_what_opengl_would_draw(incline: float) -> None:
     flat = [model.geom(name).id for name in ("wall", "board")]
     model.geom_group[:] = 5
     model.geom_group[flat] = 0
-    points = np.concatenate([display.outline(0, np.array([u, 0.0, 0.0, 0.0])).reshape(-1, 3) for u in (-0.2, 0.4)])
-    above = View.towards(points.mean(axis=0) + np.array([0.0, -2.4, 1.6]), points, (400, 200), 0, 0.01)
+    ends = [display.outline(0, np.array([u, 0.0, 0.0, 0.0])) for u in (-0.2, 0.4)]
+    points = np.reshape(ends, (-1, 3))
+    eye = points.mean(axis=0) + np.array([0.0, -2.4, 1.6])
+    above = View.towards(eye, points, (400, 200), 0, 0.01)
     for view in (still_view(motion(scene.incline), (400, 200)), above):
         sheet = Sheet(*view.pixels)
         display.draw_empty(sheet, view)
@@ -171,8 +213,14 @@ def test_a_picture_of_any_shape_can_be_drawn_and_graphics_memory_is_freed(
     size: tuple[int, int], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Also if drawing stops early."""
-    closed, real = [], Painter.close
-    monkeypatch.setattr(Painter, "close", lambda painter: (closed.append(painter), real(painter)))
+    closed: list[Painter] = []
+    close = Painter.close
+
+    def keep(painter: Painter) -> None:
+        closed.append(painter)
+        close(painter)
+
+    monkeypatch.setattr(Painter, "close", keep)
     drawing = MotionFilm(motion, speed=1.0).plan().draw(np.linspace(0, 0.4, 5), *size)
     assert next(drawing).shape == (size[1], size[0], 3)
     assert closed == []

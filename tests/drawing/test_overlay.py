@@ -1,4 +1,4 @@
-"""What is drawn at the can is what it says: the angle, the paths, the forces, and even acceleration."""
+"""What is drawn at the can is true: the angle, the paths, the forces, and the ghost."""
 
 import math
 from typing import Any
@@ -7,10 +7,12 @@ import numpy as np
 import pytest
 
 from mjbeer import Can, Trajectory, exact, frozen, hoop, pendulum, simulate, sliding
+from mjbeer.drawing.annotations import LONGEST, Annotations, Board
 from mjbeer.drawing.camera import View, follow, on_incline, scale
-from mjbeer.drawing.overlay import LONGEST, Board, Look, Mark, Marks, head, spans, warn
+from mjbeer.drawing.overlay import Spans, draw_title, draw_warning, note_spans
 from mjbeer.drawing.scene import Display, coordinates
 from mjbeer.drawing.sheet import Box, Sheet, overlap
+from mjbeer.drawing.style import FilmStyle, Mark
 from mjbeer.model.looks import WALL
 from mjbeer.theory.can import RADIUS
 
@@ -29,10 +31,19 @@ class Recorder(Sheet):
 
     def __init__(self, width: int, height: int) -> None:
         super().__init__(width, height)
-        self.lines, self.arrows, self.discs, self.words = [], [], [], []
-        self.line = lambda places, *_, **__: self.lines.append(places)
-        self.arrow = lambda tail, head, *_, **__: self.arrows.append((np.asarray(tail), np.asarray(head)))
-        self.disc = lambda place, *_, **__: self.discs.append(place)
+        self.lines: list[np.ndarray] = []
+        self.arrows: list[tuple[np.ndarray, np.ndarray]] = []
+        self.discs: list[np.ndarray] = []
+        self.words: list[str] = []
+
+    def line(self, places: np.ndarray, *arguments: Any, **more: Any) -> None:
+        self.lines.append(places)
+
+    def arrow(self, tail: np.ndarray, tip: np.ndarray, *arguments: Any, **more: Any) -> None:
+        self.arrows.append((np.asarray(tail), np.asarray(tip)))
+
+    def disc(self, place: np.ndarray, *arguments: Any, **more: Any) -> None:
+        self.discs.append(place)
 
     def text(self, place: Any, words: str, *arguments: Any, **more: Any) -> Box:
         self.words.append(words)
@@ -41,21 +52,26 @@ class Recorder(Sheet):
 
 def drawn(motion: Trajectory, time: float, *kinds: Mark) -> tuple[Recorder, View, np.ndarray]:
     """Draw marks, and return the sheet, the view, and the coordinates at that time."""
-    view = follow(motion, "fixed", PLANE, PIXELS)[0](time)
+    view = follow(motion, "fixed", PLANE, PIXELS).view(time)
     (now,) = coordinates(motion, np.array([time]))
     sheet = Recorder(*PIXELS)
-    Marks(motion, Look("", marks=kinds), PLANE).draw(sheet, view, time, now)
+    Annotations(motion, FilmStyle("", marks=kinds), PLANE).draw(sheet, view, time, now)
     return sheet, view, now
 
 
 @pytest.mark.parametrize("width", [400, 1280])
 def test_the_note_on_a_run_that_is_not_trusted_fits_into_the_picture(width: int) -> None:
     sheet = Recorder(width, 720)
-    warn(sheet, [], 100)
+    draw_warning(sheet, [], 100)
     assert sheet.boxes == []
-    warn(sheet, ["phi and u/a are off by 0.499 rad (trusted up to 0.01), as a run at other timesteps shows"], 100)
+    doubt = (
+        "phi and u/a are off by 0.499 rad (trusted up to 0.01), as a run at other timesteps shows"
+    )
+    draw_warning(sheet, [doubt], 100)
     assert " ".join(sheet.words).startswith("Not to be relied on phi and u/a are off by 0.499 rad")
-    assert all(left > 0 and right < width and top >= 100 for left, top, right, _ in sheet.boxes)
+    assert min(box.left for box in sheet.boxes) > 0
+    assert max(box.right for box in sheet.boxes) < width
+    assert min(box.top for box in sheet.boxes) >= 100
 
 
 def place(motion: Trajectory, view: View, along: float, height: float) -> np.ndarray:
@@ -77,15 +93,22 @@ def differ(one: float, other: float) -> float:
 @pytest.mark.parametrize("make", [frozen, sliding, pendulum, hoop])
 @pytest.mark.parametrize("phi", [-3.0, -1.0, -0.1, 0.1, 1.0, 3.0, 10.0])
 def test_the_angle_is_phi_from_the_incline_to_the_surface(make: Any, phi: float) -> None:
-    """One line is along the incline, or across it over a bob; the other is turned by phi, clockwise."""
+    """One line is along the incline, or across it over a bob.
+
+    The other is turned by phi, clockwise.
+    """
     motion = exact(make(), TIMES, phi)
     sheet, _, _ = drawn(motion, 0.0, "phi")
     first, second, arc = sheet.lines
-    along = -motion.scene.incline + (math.pi / 2 if motion.scene.load.fill is None else 0.0)
-    assert min(differ(direction(first), along), differ(direction(first), along + math.pi)) < ROUNDING
+    along = -motion.scene.incline
+    if motion.scene.load.fill is None:
+        along += math.pi / 2
+    assert (
+        min(differ(direction(first), along), differ(direction(first), along + math.pi)) < ROUNDING
+    )
     assert differ(direction(second), direction(first) - phi) < ROUNDING
-    for end, line in ((arc[0], first), (arc[-1], second)):
-        assert differ(direction(np.array([line[0], end])), direction(line)) < ROUNDING
+    assert differ(direction(np.array([first[0], arc[0]])), direction(first)) < ROUNDING
+    assert differ(direction(np.array([second[0], arc[-1]])), direction(second)) < ROUNDING
     assert sheet.words == ["φ"]
 
 
@@ -94,28 +117,35 @@ def test_paths_are_those_of_fig_3(make: Any) -> None:
     motion = exact(make(), TIMES, 2.0)
     sheet, view, (u, phi, roll, _) = drawn(motion, 0.3, "paths")
     rim, centre = sheet.lines
-    a, b = motion.scene.can.radius, motion.scene.load.offset
+    a = motion.scene.can.radius
+    b = motion.scene.load.offset
     load = place(motion, view, u - b * math.sin(phi), a - b * math.cos(phi))
     assert centre[-1] == pytest.approx(load, abs=ROUNDING)
     assert sheet.discs[0] == pytest.approx(load, abs=ROUNDING)
-    assert rim[-1] == pytest.approx(place(motion, view, u + a * math.sin(roll), a + a * math.cos(roll)), abs=ROUNDING)
-    start = motion.u[0] - b * math.sin(2.0), a - b * math.cos(2.0)
-    assert centre[0] == pytest.approx(place(motion, view, *start), abs=ROUNDING)
+    mark = place(motion, view, u + a * math.sin(roll), a + a * math.cos(roll))
+    assert rim[-1] == pytest.approx(mark, abs=ROUNDING)
+    start = place(motion, view, motion.u[0] - b * math.sin(2.0), a - b * math.cos(2.0))
+    assert centre[0] == pytest.approx(start, abs=ROUNDING)
 
 
 def test_forces_push_the_can_where_it_touches_the_incline() -> None:
     motion = exact(frozen(), TIMES, 2.0)
     sheet, view, (u, *_) = drawn(motion, 0.1, "normal", "friction")
     (tail, head), (start, end) = sheet.arrows
-    assert head == pytest.approx(place(motion, view, u, -WALL * 0.033), abs=ROUNDING)  # under the drawn wall
+    # Under the drawn wall.
+    assert head == pytest.approx(place(motion, view, u, -WALL * 0.033), abs=ROUNDING)
     assert differ(direction(np.array([tail, head])), math.pi / 2 - motion.scene.incline) < ROUNDING
-    normal, friction = (float(np.interp(0.1, TIMES, force)) for force in (motion.forces.normal, motion.forces.friction))
+    normal = float(np.interp(0.1, TIMES, motion.forces.normal))
+    friction = float(np.interp(0.1, TIMES, motion.forces.friction))
     # Friction is positive up the incline, which is to the left.
-    assert differ(direction(np.array([start, end])), math.pi * (friction > 0) - motion.scene.incline) < ROUNDING
-    lengths = np.hypot(*(head - tail)), np.hypot(*(end - start))
-    assert lengths[1] / lengths[0] == pytest.approx(abs(friction) / normal, rel=0.02)  # means over 10 ms
+    pushed = math.pi * (friction > 0) - motion.scene.incline
+    assert differ(direction(np.array([start, end])), pushed) < ROUNDING
+    length_of_normal = np.hypot(*(head - tail))
+    length_of_friction = np.hypot(*(end - start))
+    # What is drawn are means over 10 ms.
+    assert length_of_friction / length_of_normal == pytest.approx(abs(friction) / normal, rel=0.02)
     radius = RADIUS * view.scale(np.array([0.0, PLANE, 0.0]))
-    assert lengths[0] <= LONGEST * radius * (1 + 1e-9)
+    assert length_of_normal <= LONGEST * radius * (1 + 1e-9)
     assert sheet.words == ["N", "F"]
 
 
@@ -126,73 +156,86 @@ def test_the_ghost_is_where_even_acceleration_has_it() -> None:
     ring = sheet.lines[0]
     middle = (ring.min(axis=0) + ring.max(axis=0)) / 2
     even = 9.81 * math.sin(motion.scene.incline) * 0.4**2 / 2
-    assert middle == pytest.approx(place(motion, view, even, 0.033), abs=0.2)  # a polygon of 48 corners
+    # A polygon of 48 corners.
+    assert middle == pytest.approx(place(motion, view, even, 0.033), abs=0.2)
     assert u - even == pytest.approx(motion.scene.load.offset * math.sin(phi))
 
 
 @pytest.mark.parametrize("incline", [-60, -10, 0, 10, 30, 80])
 @pytest.mark.parametrize("radius", [1e-3, 1.0])
-def test_gravity_is_plumb_and_the_incline_s_angle_and_distances_are_as_written(incline: float, radius: float) -> None:
-    """Each tick is where a point of the board at that distance from the start is seen, in a can of any size."""
-    scene, start = frozen(math.radians(incline), can=Can.massless(radius, 3.6 * radius)), radius / 3
-    motion, display = exact(scene, np.linspace(0, 0.5, 51) * math.sqrt(radius / 0.033), 1.0), Display([scene])
-    board, view = Board(display, start), follow(motion, "fixed", display.ends()[0], PIXELS)[0](0.0)
+def test_gravity_is_plumb_and_the_incline_s_angle_and_distances_are_as_written(
+    incline: float, radius: float
+) -> None:
+    """Each tick is where the board is seen at that distance, for a can of any size."""
+    scene = frozen(math.radians(incline), can=Can.massless(radius, 3.6 * radius))
+    start = radius / 3
+    motion = exact(scene, np.linspace(0, 0.5, 51) * math.sqrt(radius / 0.033), 1.0)
+    display = Display([scene])
+    board = Board(display, start)
+    view = follow(motion, "fixed", display.ends()[0], PIXELS).view(0.0)
     sheet = Recorder(*PIXELS)
     board.draw(sheet, view)
     ((tail, head),) = sheet.arrows
     assert head[0] == tail[0]
     assert head[1] > tail[1] + 50
     ticks = [line[0] for line in sheet.lines[2 if incline else 0 :]]
-    numbers = [float(words[:-2].replace("\N{MINUS SIGN}", "-")) for words in sheet.words if words.endswith(" m")]
+    distances = [words.removesuffix(" m") for words in sheet.words if words.endswith(" m")]
+    numbers = [float(words.replace("\N{MINUS SIGN}", "-")) for words in distances]
     assert len(ticks) == len(numbers) >= 2 - (abs(incline) > 45)
     for number, tick in zip(numbers, ticks, strict=True):
         x, z = on_incline(scene, (number + start) / radius * RADIUS, board.under)
         assert tick == pytest.approx(view.pixel(np.array([x, board.front, z])), abs=PIXEL)
-    assert [words for words in sheet.words if "°" in words] == [f"α = {abs(incline):g}°"] * bool(incline)
+    assert [words for words in sheet.words if "°" in words] == [f"α = {abs(incline):g}°"] * bool(
+        incline
+    )
     if incline:
         (corner, end), arc, *_ = sheet.lines
         assert end[1] == corner[1]
         assert np.sign(end[0] - corner[0]) == -np.sign(incline)  # uphill
-        first, last = arc[0] - corner, arc[-1] - corner
-        assert first[1] == pytest.approx(0, abs=1e-9)
+        last = arc[-1] - corner
+        assert arc[0][1] == pytest.approx(corner[1], abs=1e-9)
         assert math.degrees(math.atan2(-last[1], abs(last[0]))) == pytest.approx(abs(incline))
-        assert board.pixel(view, board.along(view, corner[0])) == pytest.approx(corner, abs=PIXEL)  # on the underside
+        # On the underside.
+        assert board.pixel(view, board.along(view, corner[0])) == pytest.approx(corner, abs=PIXEL)
 
 
-def noted(run: Trajectory, name: str) -> list[tuple[float, float]]:
+def noted(run: Trajectory, name: str) -> Spans:
     """From when to when a note holds."""
-    (found,) = spans(run, [name]).values()
-    return found
+    (spans,) = note_spans(run, [name]).values()
+    return spans
+
+
+def angles(run: Trajectory, spans: Spans) -> np.ndarray:
+    """The angles phi [rad] in the middle of some spans of time."""
+    return np.interp(np.mean(spans, axis=1), run.time, run.phi)
 
 
 def test_notes_are_there_while_it_happens() -> None:
-    """Frozen beer let go on top with mu = 1: it slips, flies from 0.83 s on by some mm, and lands."""
+    """Frozen beer let go on top with mu = 1 slips, flies from 0.83 s on, and lands."""
     run = simulate(frozen(), 1.0, math.pi, rolling="contact", timestep=2e-4, friction=1.0)
-    ((first, last),), slips = noted(run, "flies"), noted(run, "slips")
+    ((first, last),) = noted(run, "flies")
     high = run.time[run.lift > 1e-3]
     assert 0.83 < first < high.min() < high.max() < last < 0.97
+    slips = noted(run, "slips")
     assert len(slips) == 3  # short rests do not interrupt them
     assert slips[0][0] == pytest.approx(0.73, abs=0.01)
-    below, above = (
-        [np.interp(np.mean(of), run.time, run.phi) for of in noted(run, name)] for name in ("heavy", "light")
-    )
-    assert np.cos(below[:3]).min() > 0.7
-    assert np.cos(above[0]) < 0
+    assert np.cos(angles(run, noted(run, "heavy"))[:3]).min() > 0.7
+    assert np.cos(angles(run, noted(run, "light"))[0]) < 0
 
 
 @pytest.mark.parametrize("make", [sliding, pendulum])
 def test_a_can_hesitates_while_its_load_is_uphill(make: Any) -> None:
     """Once a swing; a pause of a few samples does not interrupt the note."""
     run = simulate(make(), 1.2, 1.0, tolerance=1e-9)
-    found = noted(run, "hesitates")
-    assert len(found) == math.ceil(1.2 / make().period(1.0))
-    assert min(np.interp(np.mean(of), run.time, run.phi) for of in found[1:-1]) > 0.8
+    spans = noted(run, "hesitates")
+    assert len(spans) == math.ceil(1.2 / make().period(1.0))
+    assert angles(run, spans)[1:-1].min() > 0.8
 
 
 @pytest.mark.parametrize("width", [640, 1280])
 def test_no_title_runs_into_the_time(width: int) -> None:
     sheet = Recorder(width, 360)
-    head(sheet, "a long title " * 5, "many words " * 8, 0.0, 0.25)
+    draw_title(sheet, "a long title " * 5, "many words " * 8, 0.0, 0.25)
     title, other = (box for box in sheet.boxes if box[0] < width / 4)
     for box in sheet.boxes:
         assert not overlap(box, title) or box == title

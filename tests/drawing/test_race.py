@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from mjbeer import Can, frozen, simulate, sliding
-from mjbeer.drawing.film import Race, Runner
+from mjbeer.drawing.race import Race, Runner
 from mjbeer.drawing.sheet import Sheet
 from mjbeer.theory.scene import Scene
 
@@ -30,38 +30,52 @@ def run(scene: Scene, phi0: float = 0.0, duration: float = 2.5) -> Runner:
 )
 def test_times_are_those_of_even_acceleration(scene: Scene, acceleration: float) -> None:
     time = math.sqrt(2 * 1.0 / (acceleration * 9.81 * math.sin(INCLINE)))
-    assert run(scene).finish(1.0) == pytest.approx(time, rel=2e-3)  # a fill of 0.01 is a thousandth of the mass
+    # A fill of 0.01 is a thousandth of the mass.
+    assert run(scene).finish(1.0) == pytest.approx(time, rel=2e-3)
 
 
 def test_the_plates_have_all_times() -> None:
     """Also that of a can which finishes after the end."""
     cans = [run(frozen(INCLINE, fill=1.0)), run(sliding(INCLINE, can=METAL))]
-    last, first = (can.finish(1.0) for can in cans)
+    last = cans[0].finish(1.0)
+    first = cans[1].finish(1.0)
     race = partial(Race, "a race", lambda: cans, 1.0, speed=0.5)
-    assert race(duration=last + 0.1).results(cans) == [(last, f"2nd: {last:.2f} s"), (first, f"1st: {first:.2f} s")]
+    assert race(duration=last + 0.1).results(cans) == [
+        (last, f"2nd: {last:.2f} s"),
+        (first, f"1st: {first:.2f} s"),
+    ]
     early = race(duration=last - 0.01).results(cans)
-    assert early == [(pytest.approx(last - 0.41), f"needs {last:.2f} s"), (first, f"1st: {first:.2f} s")]
+    assert early == [
+        (pytest.approx(last - 0.41), f"needs {last:.2f} s"),
+        (first, f"1st: {first:.2f} s"),
+    ]
 
 
 def test_cans_with_the_same_time_share_their_place() -> None:
     """Times are the same that a viewer sees to be; the places after them are counted on."""
-    last, first = run(frozen(INCLINE, fill=1.0)), run(sliding(INCLINE, fill=1.0))
+    last = run(frozen(INCLINE, fill=1.0))
+    first = run(sliding(INCLINE, fill=1.0))
     almost = run(sliding(INCLINE * (1 - 1e-9), fill=1.0))
     assert first.finish(1.0) < almost.finish(1.0)
     race = Race("a race", list, 1.0, duration=3.0, speed=0.5)
-    told = [words for _, words in race.results([last, first, almost])]
-    quick, slow = (f"{can.finish(1.0):.2f} s" for can in (first, last))
-    assert told == [f"3rd: {slow}", f"shared 1st: {quick}", f"shared 1st: {quick}"]
+    words = [result.words for result in race.results([last, first, almost])]
+    quick = f"shared 1st: {first.finish(1.0):.2f} s"
+    assert words == [f"3rd: {last.finish(1.0):.2f} s", quick, quick]
 
 
 @pytest.mark.draws
 @pytest.mark.slow
-def test_centres_of_mass_stay_abreast_however_the_beer_swings(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The near one is where that of a beer is that does not swing; 4 pixels are 3 mm, and the axes 12 mm apart.
+def test_centres_of_mass_stay_abreast_however_the_beer_swings(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The near one is where that of a beer is that does not swing.
+
+    4 pixels are 3 mm, and the axes 12 mm apart.
 
     The cans, which are red, move to the right, where downhill is.
     """
-    dashed, line = [], Sheet.line
+    dashed = []
+    line = Sheet.line
 
     def keep(sheet: Sheet, places: np.ndarray, *arguments: Any, **more: Any) -> None:
         if more.get("dashes"):
@@ -73,8 +87,9 @@ def test_centres_of_mass_stay_abreast_however_the_beer_swings(monkeypatch: pytes
         cans = [run(sliding(INCLINE), phi0, 0.6) for phi0 in (near, 0.0)]
         race = Race("a comparison", partial(list, cans), 0.3, 0.6, speed=1.0, centres=True)
         pictures = list(race.plan().draw(np.array([0.0, 0.2, 0.4]), 640, 360))
-    red = [np.median(np.nonzero(picture[..., 0] > 2.0 * picture[..., 1])[1]) for picture in pictures]
-    assert np.diff(red).min() > 20
+    red = [picture[..., 0] > 2.0 * picture[..., 1] for picture in pictures]
+    middles = [np.median(np.nonzero(pixels)[1]) for pixels in red]
+    assert np.diff(middles).min() > 20
     columns = np.array(dashed)[:, 0, 0]
     assert columns[:3] == pytest.approx(columns[3:], abs=4)
     assert np.ptp(columns) > 50

@@ -34,7 +34,9 @@ def test_an_arrow_ends_where_it_points() -> None:
 def test_a_text_is_in_its_box(anchor: tuple[float, float]) -> None:
     sheet = Sheet(200, 100)
     left, top, right, bottom = sheet.text((100, 50), "φ = 60°", 20, "black", anchor=anchor)
-    assert (left, top) == pytest.approx((100 - anchor[0] * (right - left), 50 - anchor[1] * (bottom - top)), abs=0.5)
+    assert (left, top) == pytest.approx(
+        (100 - anchor[0] * (right - left), 50 - anchor[1] * (bottom - top)), abs=0.5
+    )
     rows, columns = dark(sheet)
     assert len(rows) > 50
     assert left <= columns.min() <= columns.max() < right

@@ -8,7 +8,7 @@ import pytest
 from mjbeer import Can, exact, frozen, hoop, simulate, sliding
 from mjbeer.drawing import strip
 from mjbeer.drawing.sheet import Sheet
-from mjbeer.drawing.strip import QUANTITIES, Chart, Line, Strip, charts, unbroken
+from mjbeer.drawing.strip import QUANTITIES, Chart, ChartStrip, Line, charts, unbroken
 
 TIME = np.linspace(0, 2, 201)
 SIZE = (400, 120)
@@ -22,15 +22,17 @@ def coloured(picture: np.ndarray, colour: list[int]) -> np.ndarray:
 
 def test_the_line_is_drawn_up_to_now_with_a_dot_at_its_end_and_theory_from_the_beginning() -> None:
     lines = [Line("theory", TIME, 1.5 - TIME), Line("MuJoCo", TIME, TIME, (1.0, 0.0, 0.0))]
-    shown, sheet, last = Strip([Chart("a ramp", lines)], *SIZE), Sheet(*SIZE), []
+    strip_of_one = ChartStrip([Chart("a ramp", lines)], *SIZE)
+    sheet = Sheet(*SIZE)
+    ends = []
     for time in (0.5, 1.0, 1.5):
-        shown.draw(sheet, time, 0)
+        strip_of_one.draw(sheet, time, 0)
         picture = sheet.picture()[:90]  # without the key below
         rows, columns = coloured(picture, [255, 0, 0])
-        last.append((columns.max(), rows.min()))
+        ends.append((columns.max(), rows.min()))
         _, theory = coloured(picture, [180, 188, 200])
         assert np.ptp(theory) > 250
-    (x1, y1), (x2, y2), (x3, y3) = last
+    (x1, y1), (x2, y2), (x3, y3) = ends
     assert x3 - x2 == pytest.approx(x2 - x1, abs=2)  # even time
     assert y3 - y2 == pytest.approx(y2 - y1, abs=2)  # even values, upwards
     assert x2 - x1 > 50
@@ -48,8 +50,16 @@ def test_theory_ends_where_the_incline_would_have_to_pull() -> None:
 
 
 def test_theory_is_not_named_where_a_can_does_not_roll_at_all() -> None:
-    """A hoop that is turned at 30 rad/s with its weight in front would leave the ground at once if it rolled."""
-    run = simulate(hoop(hoop_mass=0.06), 0.02, -math.pi / 2, 30.0, rolling="contact", friction=0.01, timestep=2e-4)
+    """A hoop that turns at 30 rad/s with its weight in front leaves the ground at once."""
+    run = simulate(
+        hoop(hoop_mass=0.06),
+        0.02,
+        -math.pi / 2,
+        30.0,
+        rolling="contact",
+        friction=0.01,
+        timestep=2e-4,
+    )
     (chart,) = charts(run, ["normal"])
     assert [line.name for line in chart.lines] == ["MuJoCo"]
 
@@ -63,33 +73,46 @@ def test_an_angle_that_jumps_is_not_joined() -> None:
 
 @pytest.mark.parametrize("make", [frozen, sliding])
 def test_forces_of_a_rolling_can_are_those_that_rolling_needs(make) -> None:
-    """The mean over a width w is off by N'' w^2/24: at 50 rad/s and a w of 20 ms by 0.04 of a weight."""
+    """The mean over a time w is off by N'' w^2/24.
+
+    At 50 rad/s and a w of 20 ms, that is 0.04 of a weight.
+    """
     motion = exact(make(can=Can.sheet_metal()), SECOND, 1.0)
-    weight, needed = motion.scene.mass * 9.81, np.array([motion.forces.normal, motion.forces.friction])
-    assert np.abs(strip.forces(motion) - needed / weight)[:, 20:-20].max() < 0.04
+    weight = motion.scene.mass * 9.81
+    mean = strip.mean_forces(motion)
+    assert np.abs(mean.normal - motion.forces.normal / weight)[20:-20].max() < 0.04
+    assert np.abs(mean.friction - motion.forces.friction / weight)[20:-20].max() < 0.04
 
 
 def test_a_can_in_the_air_has_no_forces_and_a_slipping_one_mu_times_n() -> None:
     run = simulate(frozen(), 1.0, math.pi, rolling="contact", timestep=2e-4)
     flying = run.lift > 4e-3  # and not about to land
     assert flying.sum() > 20
-    assert np.abs(strip.forces(run)[:, flying]).max() < 1e-3
+    in_flight = strip.mean_forces(run)
+    assert np.abs(in_flight.normal[flying]).max() < 1e-3
+    assert np.abs(in_flight.friction[flying]).max() < 1e-3
     slides = simulate(frozen(), 0.5, frozen().equilibrium(), rolling="contact", friction=0.1)
-    normal, friction = strip.forces(slides)[:, slides.time < 0.3]
-    assert friction / normal == pytest.approx(0.1, rel=1e-4)  # what a contact this stiff leaves out
+    sliding_down = strip.mean_forces(slides)
+    ratio = (sliding_down.friction / sliding_down.normal)[slides.time < 0.3]
+    assert ratio == pytest.approx(0.1, rel=1e-4)  # what a contact this stiff leaves out
 
 
 def test_ahead_is_the_swing_of_eq_12() -> None:
-    """u = s + b sin(phi), and s accelerates with g sin(alpha): what is left is b sin(phi), in a massless can."""
+    """u = s + b sin(phi), and s accelerates with g sin(alpha).
+
+    What is left is b sin(phi), in a massless can.
+    """
     motion = exact(sliding(), SECOND, 1.2, 3.0)
     expected = 1e3 * motion.scene.load.offset * np.sin(motion.phi)
-    assert QUANTITIES["ahead"][1](motion) == pytest.approx(expected, abs=1e-9)
+    assert QUANTITIES["ahead"].values(motion) == pytest.approx(expected, abs=1e-9)
 
 
 def test_a_damped_can_is_behind_the_one_that_accelerates_evenly() -> None:
     """By what damping costs: the even one is that without damping, and starts alike."""
-    free, damped = sliding(can=Can.sheet_metal()), sliding(can=Can.sheet_metal(), damping=1e-3, drag=1e-4)
-    motion, without = exact(damped, SECOND, 1.2, 3.0), exact(free, SECOND, 1.2, 3.0)
-    even = strip.even(motion, SECOND)
-    assert even == pytest.approx(strip.even(without, SECOND), abs=1e-12)
+    free = sliding(can=Can.sheet_metal())
+    damped = sliding(can=Can.sheet_metal(), damping=1e-3, drag=1e-4)
+    motion = exact(damped, SECOND, 1.2, 3.0)
+    even = strip.mean_motion(motion, SECOND)
+    without = strip.mean_motion(exact(free, SECOND, 1.2, 3.0), SECOND)
+    assert even == pytest.approx(without, abs=1e-12)
     assert even[-1] - motion.u[-1] > 0.2

@@ -3,6 +3,7 @@
 import os
 import pathlib
 import re
+import signal
 import subprocess
 from collections.abc import Iterator
 from functools import partial
@@ -15,9 +16,10 @@ from rich.console import Console
 from mjbeer import exact, frozen
 from mjbeer.drawing import film, opengl, video
 from mjbeer.drawing.film import MotionFilm
-from mjbeer.drawing.video import FilmJob, produce
+from mjbeer.drawing.video import FilmJob
 from mjbeer.exceptions import OutputError, ParameterError, RenderingError
-from tests.support.processes import run
+from mjbeer.output.jobs import Job, run_jobs
+from tests.support.processes import hear, interrupt, run, start
 
 # The pipe to an ffmpeg that failed is left open by mediapy until its object goes.
 pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore:unclosed file:ResourceWarning")]
@@ -29,9 +31,31 @@ FILM = MotionFilm(motion, speed=1.0, still=0.2)
 
 def decode(path: pathlib.Path) -> tuple[str, np.ndarray]:
     """What ffmpeg says about a video, and its frames."""
-    command = [imageio_ffmpeg.get_ffmpeg_exe(), "-i", str(path), "-f", "rawvideo", "-pix_fmt", "rgb24", "-"]
+    command = [
+        imageio_ffmpeg.get_ffmpeg_exe(),
+        "-i",
+        str(path),
+        "-f",
+        "rawvideo",
+        "-pix_fmt",
+        "rgb24",
+        "-",
+    ]
     done = subprocess.run(command, capture_output=True, check=True)
     return done.stderr.decode(), np.frombuffer(done.stdout, np.uint8).reshape(-1, 180, 320, 3)
+
+
+ENDLESS_VIDEO = """
+import pathlib, sys
+import numpy as np
+from mjbeer.drawing import video
+def pictures(*_):
+    while True:
+        print("writing", flush=True)
+        yield np.zeros((720, 1280, 3), np.uint8)  # more than a pipe holds: its writing hangs
+video._pictures = lambda *_: pictures()
+video.write(None, pathlib.Path(sys.argv[1]), 1280, 720, 30)
+"""
 
 
 def blank(frames: int, error: BaseException | None = None) -> Iterator[np.ndarray]:
@@ -44,7 +68,9 @@ def blank(frames: int, error: BaseException | None = None) -> Iterator[np.ndarra
 @pytest.fixture
 def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let videos have blank frames, which take no time."""
-    monkeypatch.setattr(film, "_pictures", lambda trajectory, look, speed, times, *_: blank(len(times)))
+    monkeypatch.setattr(
+        film, "_pictures", lambda motion, style, speed, times, *_: blank(len(times))
+    )
 
 
 @pytest.mark.draws
@@ -52,18 +78,24 @@ def test_a_video_is_h264_of_the_size_and_length_asked_for(tmp_path: pathlib.Path
     video.render(motion(), tmp_path / "can.mp4", fps=20, progress=False, **SIZE)
     assert os.listdir(tmp_path) == ["can.mp4"]
     about, frames = decode(tmp_path / "can.mp4")
-    assert re.search(r"Input #0.*mp4.*Video: h264 .*yuv420p.*bt709.* 320x180.* 20 fps", about, re.DOTALL)
+    assert re.search(
+        r"Input #0.*mp4.*Video: h264 .*yuv420p.*bt709.* 320x180.* 20 fps", about, re.DOTALL
+    )
     assert frames.shape == (10, 180, 320, 3)
     # The last frame is that of its time, but for what H.264 leaves out.
-    drawn = FILM.plan().draw(np.array([9, 8, 0]) / 20, 320, 180)
-    off = [np.abs(frames[-1] - each.astype(float)).mean() for each in drawn]
-    assert 1.5 * off[0] < min(off[1:])
+    pictures = FILM.plan().draw(np.array([9, 8, 0]) / 20, 320, 180)
+    differences = [np.abs(frames[-1] - picture.astype(float)).mean() for picture in pictures]
+    assert 1.5 * differences[0] < min(differences[1:])
 
 
 @pytest.mark.parametrize(("speed", "fps", "expected"), [(1, 20, 10), (0.5, 20, 20), (100, 20, 1)])
 @pytest.mark.usefixtures("undrawn")
-def test_speed_stretches_time(speed: float, fps: float, expected: int, tmp_path: pathlib.Path) -> None:
-    assert MotionFilm(motion, speed=speed).plan().times(fps) == pytest.approx(speed / fps * np.arange(expected))
+def test_speed_stretches_time(
+    speed: float, fps: float, expected: int, tmp_path: pathlib.Path
+) -> None:
+    assert MotionFilm(motion, speed=speed).plan().times(fps) == pytest.approx(
+        speed / fps * np.arange(expected)
+    )
     video.render(motion(), tmp_path / "can.mp4", speed=speed, fps=fps, progress=False, **SIZE)
     assert len(decode(tmp_path / "can.mp4")[1]) == expected
 
@@ -72,7 +104,10 @@ def test_speed_stretches_time(speed: float, fps: float, expected: int, tmp_path:
     ("arguments", "message"),
     [
         ({"path": "can.avi"}, "must end in .mp4, got 'can.avi'"),
-        ({"width": 321}, "width must be an even number of pixels up to 4096, as H.264 wants it, got 321"),
+        (
+            {"width": 321},
+            "width must be an even number of pixels up to 4096, as H.264 wants it, got 321",
+        ),
         ({"height": 4098}, "height must be an even number of pixels up to 4096"),
         ({"fps": 0}, r"fps must be greater than 0 \[1/s\], got 0"),
         ({"speed": 0}, "speed must be greater than 0, got 0"),
@@ -92,12 +127,20 @@ def test_bad_input_says_what_is_allowed(
     ("script", "kind", "reason"),
     [
         ("echo out of tune >&2\nexit 3\n", RenderingError, "out of tune\nReinstall it"),
-        ("cat > /dev/null\necho 'Error: No space left on device' >&2\nexit 1\n", OutputError, "can.mp4: No space left"),
+        (
+            "cat > /dev/null\necho 'Error: No space left on device' >&2\nexit 1\n",
+            OutputError,
+            "can.mp4: No space left",
+        ),
     ],
 )
 @pytest.mark.usefixtures("undrawn")
 def test_a_broken_ffmpeg_or_a_full_disk_leaves_nothing_and_says_why(
-    script: str, kind: type[Exception], reason: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+    script: str,
+    kind: type[Exception],
+    reason: str,
+    tmp_path: pathlib.Path,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     program = tmp_path / "ffmpeg"
     program.write_text(f"#!/bin/sh\n{script}")
@@ -123,28 +166,52 @@ def test_an_interrupted_video_leaves_what_was_there(
     assert (tmp_path / "can.mp4").read_text() == "an older video"
 
 
+@pytest.mark.slow
+def test_a_hanging_ffmpeg_ends_with_the_first_interruption(tmp_path: pathlib.Path) -> None:
+    """It reads nothing, and ignores the signal itself; the streams end when it has ended, too."""
+    program = tmp_path / "ffmpeg"
+    program.write_text("#!/bin/sh\ntrap '' INT TERM\nexec sleep 3600\n")
+    program.chmod(0o755)
+    environment = os.environ | {"IMAGEIO_FFMPEG_EXE": str(program)}
+    with start([str(tmp_path / "can.mp4")], ENDLESS_VIDEO, environment) as process:
+        hear(process, "writing")
+
+        status, error = interrupt(process, signal.SIGINT)
+
+    assert status != 0
+    assert error.count("Traceback") == 1
+    assert error.strip().endswith("KeyboardInterrupt")
+    assert os.listdir(tmp_path) == ["ffmpeg"]
+
+
 @pytest.mark.draws
 @pytest.mark.costly
 def test_films_are_made_in_other_processes_or_one_error_is_told(
     tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A hidden file of somebody else's that has a like name stays. A process that is ended may leave one of its own."""
+    """A hidden file of somebody else's that has a like name stays.
+
+    A process that is ended may leave one of its own.
+    """
     (tmp_path / ".a-mine").write_text("mine")
-    orders = [FilmJob(FILM, tmp_path / f"{name}.mp4", 160, 90, 10) for name in "ab"]
-    stills = produce(orders, Console(quiet=True))
+    films = [FilmJob(FILM, tmp_path / f"{name}.mp4", 160, 90, 10) for name in "ab"]
+    jobs = [Job(film.path.name, film.write) for film in films]
+    stills = run_jobs(jobs, Console(quiet=True))
     assert sorted(os.listdir(tmp_path)) == [".a-mine", "a.mp4", "b.mp4"]
     assert (tmp_path / "a.mp4").read_bytes() == (tmp_path / "b.mp4").read_bytes()
     assert stills[0] == stills[1]
     assert stills[0][8:12] == b"WEBP"
     monkeypatch.setenv("IMAGEIO_FFMPEG_EXE", str(tmp_path / "nowhere"))
     with pytest.raises(RenderingError, match="nowhere' is not found"):
-        produce(orders, Console(quiet=True))
+        run_jobs(jobs, Console(quiet=True))
     assert {".a-mine", "a.mp4", "b.mp4"} <= {*os.listdir(tmp_path)}
 
 
 def test_opengl_that_does_not_start_says_what_installs_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(opengl, "context", opengl.context.__wrapped__)
-    monkeypatch.setattr(opengl.importlib, "import_module", lambda name: exec(f"raise ImportError('no {name}')"))
+    monkeypatch.setattr(
+        opengl.importlib, "import_module", lambda name: exec(f"raise ImportError('no {name}')")
+    )
     monkeypatch.setenv("MUJOCO_GL", "osmesa")
     assert str(opengl.problem()).startswith("no off-screen OpenGL (osmesa): no mujoco.osmesa")
     monkeypatch.setenv("MUJOCO_GL", "glfw")
@@ -154,6 +221,8 @@ def test_opengl_that_does_not_start_says_what_installs_it(monkeypatch: pytest.Mo
 
 def test_what_draws_nothing_needs_no_opengl() -> None:
     """MuJoCo itself cannot be imported with this."""
-    status, out, err = run(["simulate", "frozen", "--duration", "0.01"], env=os.environ | {"MUJOCO_GL": "banana"})
+    status, out, err = run(
+        ["simulate", "frozen", "--duration", "0.01"], env=os.environ | {"MUJOCO_GL": "banana"}
+    )
     assert (status, err) == (0, "")
     assert "phi at the end" in out

@@ -12,7 +12,8 @@ from mjbeer.output import files
 
 
 def test_a_file_is_written_with_any_user_s_permissions(tmp_path: pathlib.Path) -> None:
-    target, usual = tmp_path / "motion.csv", tmp_path / "usual"
+    target = tmp_path / "motion.csv"
+    usual = tmp_path / "usual"
     usual.touch()
     files.write(target, "φ\n")
     assert target.read_bytes() == "φ\n".encode()
@@ -36,7 +37,10 @@ def test_a_file_keeps_its_permissions_and_nobody_else_reads_the_new_one_before(
 def test_a_folder_that_may_be_misspelt_is_not_made(tmp_path: pathlib.Path) -> None:
     """Where a folder is to be written to, its last name may be new, and its others may not."""
     for write in (lambda path: files.write(path, ""), files.make_folder):
-        with pytest.raises(OutputError, match=f"there is no folder {tmp_path}/reslts; the nearest .* is {tmp_path}$"):
+        with pytest.raises(
+            OutputError,
+            match=f"there is no folder {tmp_path}/reslts; the nearest .* is {tmp_path}$",
+        ):
             write(tmp_path / "reslts" / "new")
     assert not os.listdir(tmp_path)
     for _ in range(2):
@@ -45,7 +49,9 @@ def test_a_folder_that_may_be_misspelt_is_not_made(tmp_path: pathlib.Path) -> No
 
 
 @pytest.mark.parametrize("error", [RuntimeError("drawing failed"), KeyboardInterrupt()])
-def test_what_fails_leaves_the_old_file_and_nothing_else(tmp_path: pathlib.Path, error: BaseException) -> None:
+def test_what_fails_leaves_the_old_file_and_nothing_else(
+    tmp_path: pathlib.Path, error: BaseException
+) -> None:
     target = tmp_path / "film.mp4"
     target.write_text("old")
 
@@ -88,7 +94,9 @@ def test_a_disk_that_does_not_take_it_is_an_output_error(
 def test_a_link_stays_and_what_is_read_only_or_a_device_is_not_replaced(
     tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    link, target, pipe = tmp_path / "link.csv", tmp_path / "far" / "motion.csv", tmp_path / "pipe"
+    link = tmp_path / "link.csv"
+    target = tmp_path / "far" / "motion.csv"
+    pipe = tmp_path / "pipe"
     link.symlink_to(target)
     target.parent.mkdir()
     for text in ("made", "replaced"):

@@ -1,12 +1,24 @@
-"""Folders of results: those of others are refused, and what is there stays until what replaces it is whole."""
+"""Folders of results: those of others are refused, and what is there stays until what replaces it
+is whole."""
 
 import os
 import pathlib
+import signal
 
 import pytest
 
+from mjbeer.cli.app import main
 from mjbeer.exceptions import OutputError
 from mjbeer.output import folders
+from tests.support.processes import hear, interrupt, start
+
+HOLD = """
+import pathlib, sys, time
+from mjbeer.output.folders import owned
+with owned(pathlib.Path(sys.argv[1]), sys.argv[2]):
+    print("locked", flush=True)
+    time.sleep(3600)
+"""
 
 
 def write(folder: pathlib.Path, text: str, error: BaseException | None = None) -> None:
@@ -20,11 +32,15 @@ def write(folder: pathlib.Path, text: str, error: BaseException | None = None) -
 
 def contents(folder: pathlib.Path) -> dict[str, str]:
     """The files of a folder that are seen, by their names."""
-    return {path.name: path.read_text() for path in folder.iterdir() if not path.name.startswith(".")}
+    return {
+        path.name: path.read_text() for path in folder.iterdir() if not path.name.startswith(".")
+    }
 
 
 @pytest.mark.parametrize("exists", [True, False])
-def test_a_command_writes_again_and_again_to_its_folder(exists: bool, tmp_path: pathlib.Path) -> None:
+def test_a_command_writes_again_and_again_to_its_folder(
+    exists: bool, tmp_path: pathlib.Path
+) -> None:
     """What is in it besides stays."""
     folder = tmp_path / "results"
     if exists:
@@ -39,7 +55,9 @@ def test_a_command_writes_again_and_again_to_its_folder(exists: bool, tmp_path: 
 
 
 @pytest.mark.parametrize("error", [RuntimeError("no more"), KeyboardInterrupt()])
-def test_old_results_stay_until_the_new_ones_are_whole(error: BaseException, tmp_path: pathlib.Path) -> None:
+def test_old_results_stay_until_the_new_ones_are_whole(
+    error: BaseException, tmp_path: pathlib.Path
+) -> None:
     write(tmp_path, "old")
     before = os.listdir(tmp_path)
     with pytest.raises(type(error)) as caught:
@@ -49,7 +67,9 @@ def test_old_results_stay_until_the_new_ones_are_whole(error: BaseException, tmp
     assert sorted(os.listdir(tmp_path)) == sorted(before)
 
 
-def test_what_a_command_left_that_was_killed_is_not_taken_for_a_result(tmp_path: pathlib.Path) -> None:
+def test_what_a_command_left_that_was_killed_is_not_taken_for_a_result(
+    tmp_path: pathlib.Path,
+) -> None:
     write(tmp_path, "old")
     (tmp_path / folders.UNFINISHED).mkdir()
     (tmp_path / folders.UNFINISHED / "half.mp4").write_text("ha")
@@ -58,7 +78,9 @@ def test_what_a_command_left_that_was_killed_is_not_taken_for_a_result(tmp_path:
     assert not (tmp_path / folders.UNFINISHED).exists()
 
 
-def test_a_result_keeps_the_permissions_of_the_file_that_it_replaces(tmp_path: pathlib.Path) -> None:
+def test_a_result_keeps_the_permissions_of_the_file_that_it_replaces(
+    tmp_path: pathlib.Path,
+) -> None:
     write(tmp_path, "old")
     (tmp_path / "first.md").chmod(0o600)
     write(tmp_path, "new")
@@ -71,7 +93,10 @@ def test_a_folder_with_files_of_others_is_refused_and_stays(tmp_path: pathlib.Pa
         (tmp_path / name).write_text("mine")
     with pytest.raises(OutputError) as caught:
         write(tmp_path, "new")
-    told = f"cannot write to {tmp_path}: `mjbeer test` did not write what is there (a.html, b.html, c.html and 2 more)"
+    told = (
+        f"cannot write to {tmp_path}: `mjbeer test` did not write what is there "
+        "(a.html, b.html, c.html and 2 more)"
+    )
     assert str(caught.value) == f"{told}: name a new or an empty folder"
     assert sorted(os.listdir(tmp_path)) == names
 
@@ -90,3 +115,34 @@ def test_a_folder_that_is_a_file_is_refused(tmp_path: pathlib.Path) -> None:
     with pytest.raises(OutputError, match="file: File exists"):
         write(tmp_path / "file", "new")
     assert (tmp_path / "file").read_text() == "mine"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("command", ["benchmark", "stability", "paper", "report"])
+def test_a_second_command_in_a_folder_is_refused_until_the_first_is_gone(
+    command: str,
+    tmp_path: pathlib.Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """Killed, the first cannot tidy up; what it leaves keeps nobody out."""
+    for work in (
+        "paper.stories.write",
+        "report.page.write",
+        "studies.benchmark.timing.run",
+        "studies.stability.stability_study.run",
+    ):
+        monkeypatch.setattr(f"mjbeer.{work}", lambda *_: pytest.fail("it was begun"))
+    folder = tmp_path / "new"
+    with start([str(folder), f"mjbeer {command}"], HOLD) as holder:
+        hear(holder, "locked")
+
+        assert main([command, "--output", str(folder)]) == 2
+
+        refused = f"mjbeer: cannot write to {folder}: another command is at work there\n"
+        assert capsys.readouterr().err == refused
+        assert sorted(os.listdir(folder)) == [".lock", ".mjbeer"]
+        interrupt(holder, signal.SIGKILL)
+    for _ in range(2):
+        with folders.owned(folder, f"mjbeer {command}"):
+            pass

@@ -19,7 +19,9 @@ def test_a_plot_repeats_to_the_byte(tmp_path: pathlib.Path) -> None:
 
 
 def test_a_title_and_a_scene_stand_above_the_axes(tmp_path: pathlib.Path) -> None:
-    with plots.chart(tmp_path / "plot", title="What it shows", subtitle="of which scene") as (axes,):
+    with plots.chart(tmp_path / "plot", title="What it shows", subtitle="of which scene") as (
+        axes,
+    ):
         axes.plot([1, 2], [1, 2], label="a line")
         axes.set(xlabel="time [s]", ylabel="u [m]")
         plots.name_below([axes], 1)

@@ -31,10 +31,14 @@ def test_a_plot_is_drawn_and_small(name: str, tmp_path: pathlib.Path) -> None:
 def test_footnote_8_as_printed_is_another_motion() -> None:
     times = np.linspace(0, 3, 301)
     truth = exact(footnote_scene(), times, 0.0).phi
-    assert np.abs(footnote_8_as_printed(footnote_scene(), times, 0.0) - truth).max() > math.radians(4)
+    assert np.abs(footnote_8_as_printed(footnote_scene(), times, 0.0) - truth).max() > math.radians(
+        4
+    )
 
 
-@pytest.mark.parametrize(("words", "problem"), [([], None), (["--films"], None), (["--films"], "no OpenGL")])
+@pytest.mark.parametrize(
+    ("words", "problem"), [([], None), (["--films"], None), (["--films"], "no OpenGL")]
+)
 def test_the_command(
     words: list[str],
     problem: str | None,
@@ -46,11 +50,15 @@ def test_the_command(
     stubs.draw(monkeypatch)
     monkeypatch.setattr(opengl, "problem", lambda: problem)
     assert main(["paper", *words, "--output", str(tmp_path)]) == 0
-    text, err, filmed = (tmp_path / "stories.md").read_text(), capsys.readouterr().err, bool(words) and not problem
+    text = (tmp_path / "stories.md").read_text()
+    err = capsys.readouterr().err
+    filmed = bool(words) and not problem
     shown = {name for name in os.listdir(tmp_path) if not name.startswith(".")}
     assert shown == {"letters.svg", "told.svg", "stories.md"} | ({"told.mp4"} if filmed else set())
-    assert all(each in text for each in ("## told", "![told](told.svg)", "A stub's story."))
+    for words_of_story in ("## told", "![told](told.svg)", "A stub's story."):
+        assert words_of_story in text
     assert ("[Film](told.mp4)" in text) == filmed
-    missing = opengl.missing(["told.mp4"])
-    assert (f"Films: {missing}\n" in text, missing in err) == (bool(problem), bool(problem))
+    missing = opengl.missing_films_message(["told.mp4"])
+    assert (f"Films: {missing}\n" in text) == bool(problem)
+    assert (missing in err) == bool(problem)
     assert f"the stories are in {tmp_path / 'stories.md'}\n" in err

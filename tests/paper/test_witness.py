@@ -1,4 +1,4 @@
-"""What MuJoCo says of a motion: near theory, whichever way the can is made to roll; and ripples of loops."""
+"""What MuJoCo says of a motion, however the can is made to roll; and ripples of loops."""
 
 import math
 
@@ -22,7 +22,7 @@ SCENES = {
 
 @pytest.mark.parametrize("name", SCENES)
 def test_it_agrees_with_theory(name: str) -> None:
-    """In accelerations, and in the friction that makes a can roll, which MuJoCo's constraint has to 1e-6."""
+    """In accelerations, and to 1e-6 in the friction that makes a can roll."""
     scene, rolling = SCENES[name]
     q = watch(scene, 1.2, 0.5, rolling=rolling, samples=11)
     u_ddot, phi_ddot = accelerations(scene, q.phi, q.phi_dot, q.u_dot)
@@ -43,9 +43,9 @@ def test_it_agrees_with_theory(name: str) -> None:
 def test_a_turn_is_that_of_exact_theory(can: Can, start: float) -> None:
     """DOP853 takes 64 steps a turn, which near the separatrix leaves 2e-11 rad."""
     scene = sliding(can=can)
-    seen = loop(scene, start)
-    turn = 2 * math.pi / seen.Omega
+    observed = loop(scene, start)
+    turn = 2 * math.pi / observed.Omega
     assert exact(scene, [turn], 0.0, start).phi[0] == pytest.approx(2 * math.pi, abs=1e-10)
     times = turn * np.arange(256) / 256
     truth = exact(scene, times, 0.0, start)
-    assert seen.ripple == pytest.approx(sines(truth.phi - seen.Omega * times), abs=1e-10)
+    assert observed.ripple == pytest.approx(sines(truth.phi - observed.Omega * times), abs=1e-10)

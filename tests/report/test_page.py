@@ -1,4 +1,4 @@
-"""`mjbeer validate` and `mjbeer report`: exit status, streams, and one page that is whole and needs nothing else."""
+"""`mjbeer validate` and `mjbeer report`: exit status, streams, and one whole page."""
 
 import base64
 import html.parser
@@ -12,11 +12,11 @@ import shlex
 import pytest
 
 from mjbeer import paper
+from mjbeer.checks.check import Result
 from mjbeer.cli.app import main, parse
 from mjbeer.drawing import opengl
 from mjbeer.drawing.film import MotionFilm
 from mjbeer.output import folders
-from mjbeer.paper.checks import Result
 from mjbeer.paper.claim import CORRECTED, Bound, Claim, Witness
 from mjbeer.report import films, page
 from mjbeer.report.films import FILMS
@@ -51,27 +51,46 @@ class Page(html.parser.HTMLParser):
 
     def values(self, attribute: str, *tags: str) -> list[str]:
         """The values of an attribute."""
-        return [str(of[attribute]) for tag, of in self.elements if attribute in of and (tag in tags or not tags)]
+        return [
+            str(of[attribute])
+            for tag, of in self.elements
+            if attribute in of and (tag in tags or not tags)
+        ]
 
 
 @pytest.mark.parametrize("option", ["", "--table", "--json"])
 @pytest.mark.parametrize(("error", "status"), [(1e-3, 0), (2e-3, 1), (math.nan, 1)])
 def test_validate_tells_a_failure_whatever_is_asked_for(
-    option: str, error: float, status: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    option: str,
+    error: float,
+    status: int,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     stubs.validate(monkeypatch, first=1e-5, second=error)
-    seen = ("good", lambda: 1e-6), ("other", lambda: error)
-    rows = [Claim(name, "a stub", Witness("none", see), Bound(1e-3, ""), "1 + seen - 1") for name, see in seen]
-    monkeypatch.setattr(paper, "claims", lambda: rows)
+    bound = Bound(1e-3, "")
+    claims = [
+        Claim("good", "a stub", Witness("none", lambda: 1e-6), bound, "observed", scale="1"),
+        Claim("other", "a stub", Witness("none", lambda: error), bound, "observed", scale="1"),
+    ]
+    monkeypatch.setattr(paper, "claims", lambda: claims)
     assert main(["validate", *option.split()]) == status
     out, err = capsys.readouterr()
-    failed = "stubs: second (a stub)", "other: a stub (none)"
-    told = [f"FAILED: {name}: error {error:.1e}, at most 1.0e-03" for name in failed[: 2 * status]]
-    assert err.replace(" rad\n", "\n").splitlines() == [*told, SENTENCE.format(2 - status, 2, 2 - status, 2)]
+    messages = []
+    if status:
+        problem = f"error {error:.1e}, at most 1.0e-03"
+        messages = [
+            f"FAILED: stubs: second (a stub): {problem} rad",
+            f"FAILED: other: a stub (none): {problem}",
+        ]
+    assert err.splitlines() == [*messages, SENTENCE.format(2 - status, 2, 2 - status, 2)]
     if option == "--json":
         content = json.loads(out, parse_constant=pytest.fail)
         assert content["passed"] == (status == 0)
-        assert [row["error"] for row in content["checks"]] == [1e-5, None if math.isnan(error) else error]
+        assert [row["error"] for row in content["checks"]] == [
+            1e-5,
+            None if math.isnan(error) else error,
+        ]
     else:
         assert ("\nfirst\t" in out) == bool(option)
 
@@ -79,7 +98,10 @@ def test_validate_tells_a_failure_whatever_is_asked_for(
 @pytest.mark.slow
 @pytest.mark.parametrize("quick", [True, False])
 def test_a_report_is_one_page_with_all_films(
-    quick: bool, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    quick: bool,
+    tmp_path: pathlib.Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     stubs.validate(monkeypatch, first=1e-5, second=2e-5)
     calls = stubs.draw(monkeypatch)
@@ -88,13 +110,17 @@ def test_a_report_is_one_page_with_all_films(
     shown = {name for name in os.listdir(folder) if not name.startswith(".")}
     assert shown == {"index.html", "live.html", "stability-more.svg"}
     text = (folder / "index.html").read_text()
-    found = [base64.b64decode(each.partition(",")[2]).decode() for each in Page(text).values("src", "source")]
-    assert found == [f"film {name}" for name in (*FILMS, *([] if quick else ["told"]))]
+    sources = [source.partition(",")[2] for source in Page(text).values("src", "source")]
+    names = [*FILMS] if quick else [*FILMS, "told"]
+    assert [base64.b64decode(source).decode() for source in sources] == [
+        f"film {name}" for name in names
+    ]
     assert ("The films were left out of this quick report." in text) == quick
-    assert all(words in text for words in (SENTENCE.format(2, 2, 0, 0), "A plot &amp; a title", "<td>first</td>"))
+    for words in (SENTENCE.format(2, 2, 0, 0), "A plot &amp; a title", "<td>first</td>"):
+        assert words in text
     assert {call.width for call in calls} == {640 if quick else 768}
-    told = f"the report is in {folder / 'index.html'}", SENTENCE.format(2, 2, 0, 0)
-    assert capsys.readouterr().err.endswith("\n".join(told) + "\n")
+    where = f"the report is in {folder / 'index.html'}"
+    assert capsys.readouterr().err.endswith(f"{where}\n{SENTENCE.format(2, 2, 0, 0)}\n")
 
 
 @pytest.mark.slow
@@ -106,10 +132,11 @@ def test_without_opengl_a_report_has_all_but_films_and_says_so(
     assert not stubs.draw(monkeypatch)
     monkeypatch.setattr(opengl, "problem", lambda: "there is none")
     assert main(["report", "--output", str(tmp_path)]) == 1
-    line = opengl.missing([*FILMS, "told"])
+    line = opengl.missing_films_message([*FILMS, "told"])
     assert f"{line}\nthe report is in " in capsys.readouterr().err
     text = (tmp_path / "index.html").read_text()
-    assert all(words in text for words in (line.replace("&", "&amp;"), "2.0e-03 <strong>FAIL</strong>"))
+    assert line.replace("&", "&amp;") in text
+    assert "2.0e-03 <strong>FAIL</strong>" in text
     assert "<video" not in text
 
 
@@ -122,7 +149,8 @@ def test_a_film_that_fails_leaves_the_old_page(
         (tmp_path / "index.html").write_text("of an earlier report")
     assert main(["report", "--output", str(tmp_path)]) == 2
     assert capsys.readouterr().err.endswith("mjbeer: cannot draw pendulum.mp4\n")
-    assert [path.name for path in tmp_path.iterdir() if not path.name.startswith(".")] == ["index.html"]
+    shown = [path.name for path in tmp_path.iterdir() if not path.name.startswith(".")]
+    assert shown == ["index.html"]
     assert (tmp_path / "index.html").read_text() == "of an earlier report"
 
 
@@ -131,26 +159,43 @@ def text() -> str:
     """A page with a result for each misprint, whose errors are made up."""
     results = [
         Result(
-            row.equation, row.quantity, "a witness", bound=1e-6, reason="rounding", error=1.7e-9 * (place + 1),
-            values={"printed": 0.0127 * (place + 1), "expected_error": 0.0123 * (place + 1), "verdict": CORRECTED},
+            group=row.equation,
+            name=row.quantity,
+            by="a witness",
+            bound=1e-6,
+            reason="rounding",
+            error=1.7e-9 * (place + 1),
+            values={
+                "printed": 0.0127 * (place + 1),
+                "expected_error": 0.0123 * (place + 1),
+                "verdict": CORRECTED,
+            },
         )
         for place, row in enumerate(MISPRINTS)
-    ]  # fmt: skip
+    ]
     with pytest.MonkeyPatch.context() as patch:
         stubs.draw(patch)
-        plots = {plot.name: plot for job in page.plot_jobs(pathlib.Path()) if job.in_memory and (plot := job.write())}
-        return page.page(Validation([], results), {"race": (b"film", b"still")}, plots, False, "")
+        jobs = [job for job in page.plot_jobs(pathlib.Path()) if job.in_memory]
+        plots = {job.path.name: job.write() for job in jobs}
+        return page.page(
+            Validation([], results), {"race": page.ShownFilm(b"film", b"still")}, plots, False, ""
+        )
 
 
 def test_nothing_comes_from_elsewhere_and_nothing_runs(text: str) -> None:
-    """Links that a reader may follow are the only addresses; the policy forbids the rest, and all scripts."""
+    """Links that a reader may follow are the only addresses.
+
+    The policy forbids the rest, and all scripts.
+    """
     read = Page(text)
     taken = read.values("src") + read.values("poster") + read.values("href", "link")
-    assert all(each.startswith(("data:", "#")) for each in taken)
+    assert all(address.startswith(("data:", "#")) for address in taken)
     (policy,) = read.values("content", "meta")[:1]
     assert "default-src 'none'" in policy
     assert not re.search(r"\bhttps?:|\*|script", policy)
-    names, inside = read.values("id"), {each[1:] for each in read.values("href", "a") if each[0] == "#"}
+    names = read.values("id")
+    links = read.values("href", "a")
+    inside = {link.removeprefix("#") for link in links if link.startswith("#")}
     assert len(names) == len(set(names))
     assert set(read.values("id", "section")) <= inside <= set(names)
     assert all(read.values("alt", "img"))
@@ -158,9 +203,14 @@ def test_nothing_comes_from_elsewhere_and_nothing_runs(text: str) -> None:
 
 def test_the_misprints_have_their_kinds_and_the_numbers_of_the_results(text: str) -> None:
     shown = re.findall(r'misses by <data value="([^"]*)">(.*?)</data>', text)
-    expected = [number * (place + 1) for place in range(len(MISPRINTS)) for number in (0.0127, 1.7e-9)]
+    expected = []
+    for place in range(len(MISPRINTS)):
+        expected += [0.0127 * (place + 1), 1.7e-9 * (place + 1)]
     assert [float(value) for value, _ in shown] == expected
-    assert [words for _, words in shown[:2]] == ["1.3 %", "1.7&thinsp;·&thinsp;10<sup>\N{MINUS SIGN}9</sup>"]
+    assert [words for _, words in shown[:2]] == [
+        "1.3 %",
+        "1.7&thinsp;·&thinsp;10<sup>\N{MINUS SIGN}9</sup>",
+    ]
     assert "consequence of (39)" in text
     assert text.count("<blockquote>") == sum(bool(row.quote) for row in MISPRINTS)
 
@@ -172,10 +222,14 @@ def test_a_film_s_command_makes_the_same_motion(name: str) -> None:
     film = FILMS[name]
     assert isinstance(film, MotionFilm)
     given = parse(shlex.split(films.COMMANDS[name])[1:])
-    ours, theirs = film.trajectory(), trajectory_of(given)
+    ours = film.trajectory()
+    theirs = trajectory_of(given)
     # The degrees of a command have seven digits.
-    assert (ours.phi0, ours.phi_dot0) == pytest.approx((theirs.phi0, theirs.phi_dot0), abs=1e-6)
-    assert (ours.scene, ours.rolling, ours.integrator) == (theirs.scene, theirs.rolling, theirs.integrator)
+    assert ours.phi0 == pytest.approx(theirs.phi0, abs=1e-6)
+    assert ours.phi_dot0 == pytest.approx(theirs.phi_dot0, abs=1e-6)
+    assert ours.scene == theirs.scene
+    assert ours.rolling == theirs.rolling
+    assert ours.integrator == theirs.integrator
 
 
 @pytest.mark.parametrize("row", MISPRINTS, ids=lambda row: row.equation)

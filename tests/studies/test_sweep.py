@@ -1,13 +1,12 @@
-"""A sweep is what its scenes are one by one: to the last bit, in any executor, and near exact theory."""
+"""A sweep is what its scenes are one by one: to the last bit, in any executor, and near exact
+theory."""
 
 import math
 import pathlib
-import subprocess
-import sys
-import time
+import signal
 import warnings
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from functools import partial
 from typing import Any
 
@@ -16,17 +15,40 @@ import pytest
 import xarray
 
 import mjbeer
-from mjbeer import Can, LiquidWarning, Scene, Trajectory, frozen, liquid, pendulum, simulate, sliding
+from mjbeer import (
+    Can,
+    LiquidWarning,
+    Scene,
+    Trajectory,
+    frozen,
+    liquid,
+    pendulum,
+    simulate,
+    sliding,
+)
 from mjbeer.exceptions import OutputError, ParameterError
-from mjbeer.output import files
+from mjbeer.output import jobs
 from mjbeer.studies import sweep_runs
-from mjbeer.studies.sweep_runs import BEYOND, DIVERGED, NO_VALUE, NOT_REACHED, NOT_YET, REFUSED, WELL
+from mjbeer.studies.sweep_runs import (
+    BEYOND,
+    DIVERGED,
+    NO_VALUE,
+    NOT_REACHED,
+    NOT_YET,
+    REFUSED,
+    WELL,
+)
+from tests.support.processes import hear, interrupt, start
 
 INCLINES, FILLS = np.radians([3.0, 11.0, 20.0]), np.array([0.2, 0.5, 0.7, 0.95])
 
 
-def sweep_of_sliding(make: Callable[..., Scene] = sliding, duration: float = 1.0, **others: Any) -> xarray.Dataset:
-    return mjbeer.sweep(make, duration, 1.0, **({"tolerance": 1e-6, "incline": INCLINES, "fill": FILLS} | others))
+def sweep_of_sliding(
+    make: Callable[..., Scene] = sliding, duration: float = 1.0, **others: Any
+) -> xarray.Dataset:
+    return mjbeer.sweep(
+        make, duration, 1.0, **({"tolerance": 1e-6, "incline": INCLINES, "fill": FILLS} | others)
+    )
 
 
 def highest(trajectory: Trajectory) -> float:
@@ -57,25 +79,38 @@ def broken(trajectory: Trajectory) -> float:
     ],
 )
 def test_each_scene_is_what_simulate_gives_to_the_last_bit(setting: dict[str, Any]) -> None:
-    lost = {name: setting[name] for name in ("damping", "drag") if name in setting}
-    make, setting = partial(sliding, can=Can.sheet_metal(), **lost), {k: v for k, v in setting.items() if k not in lost}
-    swept = mjbeer.sweep(make, 0.3, 0.7, phi_dot0=[0.0, 2.0], incline=INCLINES[:2], fill=[0.3], **setting)
-    assert (tuple(swept.dims), swept["phi"].shape) == (("incline", "fill", "phi_dot0"), (2, 1, 2))
-    for (row, _, rate), status in np.ndenumerate(swept["status"].values):
-        single = simulate(make(INCLINES[row], 0.3), 0.3, 0.7, float(swept["phi_dot0"][rate]), times=[0.3], **setting)
-        found = {name: array.values[row, 0, rate] for name, array in swept.items()}
-        assert status == (BEYOND if single.rolling_warnings or single.liquid_warnings else WELL)
-        for name in ("phi", "u", "phi_dot", "u_dot"):
-            assert found[name] == getattr(single, name)[-1]
-        assert (found["error"], found["trusted"]) == (single.error_estimate, single.trusted)
-        assert (found["energy_drift"], found["friction_needed"]) == (single.energy_drift, single.record.needed_friction)
-        assert (found["lowest_normal"], found["parting_time"]) == (
-            single.record.lowest_normal,
-            single.record.rolling_ends_at,
-        )
+    setting = dict(setting)
+    lost = {name: setting.pop(name) for name in ("damping", "drag") if name in setting}
+    make = partial(sliding, can=Can.sheet_metal(), **lost)
+
+    swept = mjbeer.sweep(
+        make, 0.3, 0.7, phi_dot0=[0.0, 2.0], incline=INCLINES[:2], fill=[0.3], **setting
+    )
+
+    assert tuple(swept.dims) == ("incline", "fill", "phi_dot0")
+    assert swept["phi"].shape == (2, 1, 2)
+    for (row, _, column), status in np.ndenumerate(swept["status"].values):
+        scene = make(INCLINES[row], 0.3)
+        phi_dot0 = float(swept["phi_dot0"][column])
+        run = simulate(scene, 0.3, 0.7, phi_dot0, times=[0.3], **setting)
+        values = {name: array.values[row, 0, column] for name, array in swept.items()}
+        beyond = bool(run.rolling_warnings or run.liquid_warnings)
+        assert status == (BEYOND if beyond else WELL)
+        assert values["phi"] == run.phi[-1]
+        assert values["u"] == run.u[-1]
+        assert values["phi_dot"] == run.phi_dot[-1]
+        assert values["u_dot"] == run.u_dot[-1]
+        assert values["error"] == run.error_estimate
+        assert values["trusted"] == run.trusted
+        assert values["energy_drift"] == run.energy_drift
+        assert values["friction_needed"] == run.record.needed_friction
+        assert values["lowest_normal"] == run.record.lowest_normal
+        assert values["parting_time"] == run.record.rolling_ends_at
 
 
-def test_the_result_is_the_same_with_any_number_of_threads_and_in_any_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_result_is_the_same_with_any_number_of_threads_and_in_any_pieces(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     alone = sweep_of_sliding(executor=ThreadPoolExecutor(1))
     assert alone.identical(sweep_of_sliding(executor=ThreadPoolExecutor(5)))
     monkeypatch.setattr(sweep_runs, "_PIECE", 0.0)  # then each piece has one scene
@@ -84,10 +119,24 @@ def test_the_result_is_the_same_with_any_number_of_threads_and_in_any_pieces(mon
 
 @pytest.mark.slow
 def test_the_result_is_the_same_in_processes() -> None:
-    with files.pool(2) as pool:
-        assert sweep_of_sliding(quantity=highest).identical(sweep_of_sliding(quantity=highest, executor=pool))
-        with pytest.raises(ParameterError, match="must be defined at the top of a module to be sent to processes"):
-            mjbeer.sweep(lambda incline: sliding(incline, 0.4), 0.1, 1.0, incline=INCLINES, executor=pool)
+    """That of a quantity with a name and of a function, too."""
+    asked = {"fill": FILLS[:2], "quantity": ["period", highest]}
+    here = sweep_of_sliding(**asked)
+
+    with jobs.pool(2) as processes:
+        there = sweep_of_sliding(**asked, executor=processes)
+
+    assert there.identical(here)
+
+
+def test_what_cannot_be_sent_to_processes_is_refused() -> None:
+    with (
+        ProcessPoolExecutor(1) as processes,
+        pytest.raises(ParameterError, match="must be defined at the top of a module to be sent"),
+    ):
+        mjbeer.sweep(
+            lambda incline: sliding(incline, 0.4), 0.1, 1.0, incline=INCLINES, executor=processes
+        )
 
 
 @pytest.mark.costly
@@ -96,7 +145,9 @@ def test_the_result_is_the_same_on_a_dask_cluster(monkeypatch: pytest.MonkeyPatc
     here = sweep_of_sliding()
     monkeypatch.setattr(sweep_runs, "integrate", lambda *_: pytest.fail("it ran in this process"))
     with (
-        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as cluster,
+        distributed.LocalCluster(
+            n_workers=2, threads_per_worker=1, dashboard_address=":0"
+        ) as cluster,
         distributed.Client(cluster) as client,
     ):
         assert len(client.ncores()) == 2
@@ -109,13 +160,18 @@ def test_a_period_is_that_of_exact_theory() -> None:
     swept = mjbeer.sweep(sliding, 2.0, starts, tolerance=1e-6, quantity="period", fill=[0.1, 0.75])
     for (row, column), period in np.ndenumerate(swept["period"].values):
         scene, phi0 = sliding(fill=float(swept["fill"][row])), starts[column]
-        assert period == pytest.approx(scene.period(phi0 - scene.equilibrium()), rel=1e-5 / min(1, abs(phi0)))
+        assert period == pytest.approx(
+            scene.period(phi0 - scene.equilibrium()), rel=1e-5 / min(1, abs(phi0))
+        )
 
 
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"fill": [0.5, 1.5]}, r"fill\[1\]: fill must be a fraction between 0.01 and 1 .*, got 1.5"),
+        (
+            {"fill": [0.5, 1.5]},
+            r"fill\[1\]: fill must be a fraction between 0.01 and 1 .*, got 1.5",
+        ),
         ({"fil": [0.5]}, r"fil\[0\]: sliding\(\) got an unexpected keyword argument 'fil'"),
         ({"phi0": [0.1, 1e11]}, r"phi0\[1\]: phi0 must be between"),
         ({"quantity": "perod"}, "quantity must be one of 'phi', .*'period', .*; got 'perod'"),
@@ -138,15 +194,28 @@ def test_what_is_not_allowed_is_refused_before_anything_runs(
 
 def test_units_and_the_call_are_attributes_and_a_run_ends_with_a_whole_timestep() -> None:
     swept = mjbeer.sweep(frozen, 0.1, 0.7, phi_dot0=0.5, timestep=3e-3, fill=[0.5])
-    assert (swept.phi.attrs["units"], swept.fill.attrs, swept.phi0, swept.phi_dot0) == ("rad", {}, 0.7, 0.5)
-    assert (swept.make, swept.timestep, swept.duration) == ("mjbeer.theory.scene.frozen", 3e-3, 34 * 3e-3)
+    assert (swept.phi.attrs["units"], swept.fill.attrs, swept.phi0, swept.phi_dot0) == (
+        "rad",
+        {},
+        0.7,
+        0.5,
+    )
+    assert (swept.make, swept.timestep, swept.duration) == (
+        "mjbeer.theory.scene.frozen",
+        3e-3,
+        34 * 3e-3,
+    )
     assert swept["phi"][0] == simulate(frozen(), 0.1, 0.7, 0.5, timestep=3e-3).phi[-1]
 
 
 def test_a_combination_that_is_not_possible_is_told_and_the_others_are_there() -> None:
-    swept = mjbeer.sweep(pendulum, 0.1, 1.0, tolerance=1e-6, offset=[0.01, 0.05], radius=[0.03, 0.06])
+    swept = mjbeer.sweep(
+        pendulum, 0.1, 1.0, tolerance=1e-6, offset=[0.01, 0.05], radius=[0.03, 0.06]
+    )
     assert swept["status"].values.tolist() == [[WELL, WELL], [REFUSED, WELL]]
-    assert swept.failed.startswith("scene 2 (offset[1] = 0.05, radius[0] = 0.03): load offset must be 0, or between")
+    assert swept.failed.startswith(
+        "scene 2 (offset[1] = 0.05, radius[0] = 0.03): load offset must be 0, or between"
+    )
     assert swept["phi"].isnull().values.tolist() == [[False, False], [True, False]]
 
 
@@ -158,7 +227,9 @@ def test_what_goes_wrong_inside_of_a_run_is_listed(monkeypatch: pytest.MonkeyPat
     assert wild["status"][1] == DIVERGED
     assert "diverged at t" in wild.failed
     monkeypatch.setattr(sweep_runs, "integrate", lambda *_: 1 / 0)
-    assert mjbeer.sweep(sliding, 0.1, 1.0).failed == "scene 0 (): ZeroDivisionError: division by zero"
+    assert (
+        mjbeer.sweep(sliding, 0.1, 1.0).failed == "scene 0 (): ZeroDivisionError: division by zero"
+    )
 
 
 def test_a_quantity_without_a_value_leaves_the_others() -> None:
@@ -168,7 +239,9 @@ def test_a_quantity_without_a_value_leaves_the_others() -> None:
     assert swept["period"].notnull().values.tolist() == [True, False]
     assert np.isnan(swept["broken"]).all()
     assert np.isfinite(swept["phi"]).all()
-    assert swept["highest"][0] == simulate(frozen(math.radians(5)), 1.5, 1.0, tolerance=1e-6).phi.max()
+    assert (
+        swept["highest"][0] == simulate(frozen(math.radians(5)), 1.5, 1.0, tolerance=1e-6).phi.max()
+    )
     assert "broken: ZeroDivisionError: no frozen can do that" in swept.failed
 
 
@@ -178,7 +251,9 @@ def test_a_quantity_that_is_not_a_number_is_told() -> None:
     assert swept["status"].values.tolist() == [NO_VALUE, NO_VALUE]
     assert swept.failed == "scene 0 (fill[0] = 0.4): missing: it is not a number (NaN)"
     assert np.isinf(swept["endless"]).all()
-    assert mjbeer.sweep(frozen, 0.1, 1.0, fill=[0.4], quantity=endless)["status"].values.tolist() == [WELL]
+    assert mjbeer.sweep(frozen, 0.1, 1.0, fill=[0.4], quantity=endless)[
+        "status"
+    ].values.tolist() == [WELL]
 
 
 def test_what_liquids_warn_of_is_said_once() -> None:
@@ -187,45 +262,91 @@ def test_what_liquids_warn_of_is_said_once() -> None:
 
     with warnings.catch_warnings(record=True, action="always") as told:
         mjbeer.sweep(honey, 0.01, 1.0, tolerance=1e-6, fill=[0.4, 0.5, 0.6])
-    assert [(each.category, each.filename) for each in told] == [(LiquidWarning, __file__)]
-    assert "it coats the can" in str(told[0].message)
+
+    (warning,) = told
+    assert warning.category is LiquidWarning
+    assert warning.filename == __file__
+    assert "it coats the can" in str(warning.message)
 
 
 @pytest.fixture
 def counted(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     """Everything that is simulated."""
-    ran, integrate = [], sweep_runs.integrate
-    monkeypatch.setattr(sweep_runs, "integrate", lambda *arguments: (ran.append(arguments), integrate(*arguments))[1])
+    ran: list[Any] = []
+    integrate = sweep_runs.integrate
+    monkeypatch.setattr(
+        sweep_runs,
+        "integrate",
+        lambda *arguments: (ran.append(arguments), integrate(*arguments))[1],
+    )
     return ran
 
 
+SWEEP_THAT_STOPS = """
+import sys, time
+from mjbeer import frozen, sweep
+from mjbeer.studies import sweep as sweeps, sweep_runs
+from tests.studies.test_sweep import RESUMED
+save = sweeps._save
+def save_and_stop(dataset, path):
+    save(dataset, path)
+    if (dataset["status"] != sweep_runs.NOT_YET).sum() >= int(sys.argv[2]):
+        print("saved", flush=True)
+        time.sleep(3600)
+sweeps._save = save_and_stop
+sweeps._SAVED_EVERY = 0.0
+sweep_runs._PIECE = 0.0
+sweep(frozen, **RESUMED, output=sys.argv[1])
+"""
+"""It stops as soon as it has saved so many scenes, of which each is a piece of work."""
+RESUMED: dict[str, Any] = {
+    "duration": 1.0,
+    "phi0": 1.0,
+    "timestep": 2e-3,
+    "quantity": "period",
+    "progress": False,
+    "incline": [1.4, 0.1],
+    "fill": [k / 12 for k in range(1, 12)],
+}
+"""A sweep of 22 scenes."""
+
+
+def simulated(path: pathlib.Path) -> int:
+    """Return how many scenes of a stored sweep are simulated."""
+    status = xarray.load_dataset(path, engine="scipy")["status"]
+    return int((status != NOT_YET).sum())
+
+
 @pytest.mark.slow
-def test_a_sweep_that_is_killed_again_and_again_gets_on(tmp_path: pathlib.Path, counted: list[Any]) -> None:
-    """What failed before is told at the end; the first scene is simulated again, to see that it is the same."""
-    path, before = tmp_path / "map.nc", 0
-    call: dict[str, Any] = {"duration": 1.0, "phi0": 1.0, "timestep": 2e-4, "quantity": "period", "progress": False}
-    call |= {"incline": [1.4, 0.1], "fill": [k / 12 for k in range(1, 12)]}
-    code = "import mjbeer; from mjbeer.studies import sweep; sweep._SAVED_EVERY = 0.0; "
-    code += f"mjbeer.sweep(mjbeer.frozen, **{call!r}, output={str(path)!r})"
+def test_a_sweep_that_is_killed_goes_on(tmp_path: pathlib.Path, counted: list[Any]) -> None:
+    """What failed before is told at the end, and the first scene is simulated again."""
+    path = tmp_path / "map.nc"
+    with start([str(path), "5"], SWEEP_THAT_STOPS) as process:
+        hear(process, "saved")
+        interrupt(process, signal.SIGKILL)
+    assert simulated(path) == 5
 
-    def done() -> int:
-        return int((xarray.load_dataset(path, engine="scipy")["status"] != NOT_YET).sum()) if path.exists() else 0
-
-    for _ in range(2):
-        process = subprocess.Popen([sys.executable, "-c", code])
-        while done() <= before and process.poll() is None:
-            time.sleep(0.05)
-        process.kill()
-        process.wait()
-        assert done() > before
-        before = done()
-    whole = mjbeer.sweep(frozen, **call)
+    whole = mjbeer.sweep(frozen, **RESUMED)
     assert "period: no equilibrium" in whole.failed
-    for left in (whole["status"].size - before, 0):
-        del counted[:]
-        assert mjbeer.sweep(frozen, **call, output=path).identical(whole)
-        assert len(counted) == left + 1
+    del counted[:]
+    resumed = mjbeer.sweep(frozen, **RESUMED, output=path)
+
+    assert resumed.identical(whole)
+    assert len(counted) == 22 - 5 + 1
     assert xarray.load_dataset(path, engine="scipy").identical(whole)
+
+
+def test_a_sweep_that_is_whole_simulates_its_first_scene_alone(
+    tmp_path: pathlib.Path, counted: list[Any]
+) -> None:
+    path = tmp_path / "map.nc"
+    whole = sweep_of_sliding(output=path)
+    del counted[:]
+
+    again = sweep_of_sliding(output=path)
+
+    assert again.identical(whole)
+    assert len(counted) == 1
 
 
 def edited(incline: float, fill: float) -> Scene:
@@ -240,7 +361,10 @@ def edited(incline: float, fill: float) -> Scene:
         ({"duration": 0.5, "phi_dot0": 1.0}, "another sweep, whose duration, phi_dot0 differ"),
         ({"fill": FILLS[:2]}, "another sweep, whose fill, quantities differ"),
         ({"quantity": "period"}, "another sweep, whose quantities differ"),
-        ({"make": edited}, "other results than this call, at incline.0. = 0.0523599, fill.0. = 0.2"),
+        (
+            {"make": edited},
+            "other results than this call, at incline.0. = 0.0523599, fill.0. = 0.2",
+        ),
     ],
 )
 def test_a_file_of_another_sweep_is_refused(
@@ -251,7 +375,9 @@ def test_a_file_of_another_sweep_is_refused(
     path = tmp_path / "map.nc"
     sweep_of_sliding(output=path)
     before = path.read_bytes()
-    with pytest.raises(ParameterError, match=f"map.nc has {differs}.*: give another name, or remove it"):
+    with pytest.raises(
+        ParameterError, match=f"map.nc has {differs}.*: give another name, or remove it"
+    ):
         sweep_of_sliding(**({"output": path} | other))
     assert path.read_bytes() == before
 

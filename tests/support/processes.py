@@ -103,6 +103,11 @@ def work_and_sleep() -> dict[str, Any]:
     return {}
 
 
+def hang_in_a_program() -> None:
+    """Start a program that hangs and ignores signals, and wait for it; the program says when it is there."""
+    subprocess.run(["sh", "-c", "trap '' INT TERM; echo at work; exec sleep 3600"], check=True)
+
+
 def draw_and_sleep(path: pathlib.Path) -> None:
     """Begin a plot that takes longer than any test, and say so."""
     from mjbeer.output import files

@@ -6,13 +6,13 @@ from functools import partial
 import pytest
 
 from mjbeer import exact, paper, sliding
+from mjbeer.checks.check import Check
 from mjbeer.drawing import opengl, video
 from mjbeer.drawing.film import MotionFilm
 from mjbeer.exceptions import RenderingError
-from mjbeer.output import files, plots
+from mjbeer.output import files, jobs, plots
 from mjbeer.paper import stories
-from mjbeer.paper.checks import Check
-from mjbeer.paper.stories import Story
+from mjbeer.paper.stories import PlotSize, Story
 from mjbeer.report import page
 from mjbeer.studies.benchmark.points import SHIPPED, Benchmark
 from mjbeer.studies.validation import validate as validation
@@ -56,10 +56,16 @@ def draw(monkeypatch: pytest.MonkeyPatch, fail_at: str = "") -> list[video.FilmJ
 
     film = MotionFilm(partial(exact, sliding(), [0.0, 0.1], 0.1), speed=0.5)
     monkeypatch.setattr(video.FilmJob, "write", filmed)
-    monkeypatch.setattr(video, "produce", lambda orders, _: [order.write() for order in orders])
+    monkeypatch.setattr(jobs, "run_jobs", lambda given, _: [job.work() for job in given])
     monkeypatch.setattr(opengl, "problem", lambda: None)
     story = Story(
-        "told", "A story & a title", "", "A stub's story.", (1, 1, 4, 3), lambda panels: None, film
+        "told",
+        "A story & a title",
+        "",
+        "A stub's story.",
+        PlotSize(1, 1, 4, 3),
+        lambda panels: None,
+        film,
     )
     monkeypatch.setattr(stories, "STORIES", (story,))
     monkeypatch.setattr(page, "plot_jobs", few)

@@ -92,7 +92,9 @@ def test_the_fit_is_as_near_as_it_says() -> None:
     assert exact_torque == pytest.approx(
         sliding(density=used.density).mass * 9.81 * 0.033 * math.sin(math.radians(10))
     )
-    assert used.damping.valid_rates == pytest.approx((0.139 * used.slip_rate, 1.39 * used.slip_rate))
+    assert used.damping.valid_rates == pytest.approx(
+        (0.139 * used.slip_rate, 1.39 * used.slip_rate)
+    )
     x = np.geomspace(0.139, 1.39, 2001)
     ratio = used.damping.torque(used.slip_rate * x) / (exact_torque * x**1.5)
     # The ends are rounded to three digits, where the ratio is steep; inside it is level.

@@ -1,6 +1,7 @@
-"""What follows a command: options of scenes, starts, runs and studies, in degrees for angles and in SI units otherwise.
+"""What follows a command: options of scenes, starts, runs and studies, in degrees and SI units.
 
-A scene has the options that its function in Python has, with the same defaults; only their meanings are written here.
+A scene has the options that its function in Python has, with the same defaults; only their meanings
+are written here.
 """
 
 import inspect
@@ -23,28 +24,39 @@ from mjbeer.theory.liquid import NAMES, liquid, liquid_in
 from mjbeer.theory.scene import DURATION, Scene, frozen, hoop, pendulum, sliding
 from mjbeer.theory.standing import standing
 
-SCENES: dict[str, Callable[..., Scene]] = {each.__name__: each for each in (sliding, liquid, frozen, pendulum, hoop)}
+SCENES: dict[str, Callable[..., Scene]] = {
+    "sliding": sliding,
+    "liquid": liquid,
+    "frozen": frozen,
+    "pendulum": pendulum,
+    "hoop": hoop,
+}
 STANDING = {"standing": standing}
 _CANS = {"massless": Can.massless, "metal": Can.sheet_metal}
-_MEANINGS = {  # of the options of scenes, in the order of the help
+_MEANINGS = {
     "incline": "angle of the incline to the horizontal [degrees]; if positive, u grows downhill",
-    "fill": "height of the load as a fraction of the can's diameter, or of the length of a can that stands",
-    "can": "massless (section 2 of the paper), or metal, of aluminium sheet 0.1 mm thick (section 3)",
+    "fill": "height of the load as a fraction of the can's diameter, "
+    "or of the length of a can that stands",
+    "can": "massless (section 2 of the paper), "
+    "or metal, of aluminium sheet 0.1 mm thick (section 3)",
     "radius": "radius of the can [m]",
     "length": "length of the can [m]",
     "liquid": "the liquid, at 20 degrees Celsius",
     "density": "density of beer [kg/m^3], or of a liquid if it is not its own",
     "viscosity": "kinematic viscosity [m^2/s] if it is not the liquid's own; water has 1e-6",
     "gravity": "acceleration of gravity [m/s^2]",
-    "damping": "torque between can and beer over the rate at which the can turns faster than the beer [N m s]",
+    "damping": "torque between can and beer over the rate at which the can turns faster "
+    "than the beer [N m s]",
     "drag": "force of the air against the motion over the square of the speed [kg/m]",
     "wheel_mass": "mass of the wheel [kg]",
     "hoop_mass": "mass of the hoop [kg]",
     "load_mass": "mass of the load: a pendulum's bob, or a weight on a rim [kg]",
     "offset": "length of the pendulum, from the axle to the bob [m]",
     "modes": "modes of the slosh that move, from 0 (solid) to 5",
-    "damping_ratio": "damping of each mode over the critical one; by default what the viscosity gives",
+    "damping_ratio": "damping of each mode over the critical one; "
+    "by default what the viscosity gives",
 }
+"""What the options of scenes mean, in the order of the help."""
 
 
 def angle(text: str) -> float:
@@ -55,7 +67,7 @@ def angle(text: str) -> float:
 
 
 def numbers(text: str) -> float | np.ndarray:
-    """Read a number as "3", or several as "1,2,5" or as "1:20:39", which is 39 numbers from 1 to 20."""
+    """Read a number as "3", or several as "1,2,5" or "1:20:39", 39 numbers from 1 to 20."""
     try:
         if ":" in text:
             first, last, count = text.split(":")
@@ -65,7 +77,9 @@ def numbers(text: str) -> float | np.ndarray:
         if not (read.size and np.isfinite(read).all()):
             raise ValueError
     except ValueError:
-        allowed = "no number, no list as 1,2,5, and no range as 1:20:39, which is 39 numbers from 1 to 20"
+        allowed = (
+            "no number, no list as 1,2,5, and no range as 1:20:39, which is 39 numbers from 1 to 20"
+        )
         raise ArgumentTypeError(f"{text!r} is {allowed}") from None
     return read if read.size > 1 else float(read[0])
 
@@ -86,41 +100,62 @@ def known(text: str) -> tuple[str, tuple[float, float]]:
 
 
 class Option(NamedTuple):
-    """An option, or a word if its name has no dashes; of several values if its default is a list, of none if False."""
+    """An option, or a word if its name has no dashes."""
 
     name: str
     help: str
     default: Any = None
-    kind: Any = float
-    """A function that reads a value, also the default if that is a text; or all values that are allowed."""
+    read: Any = float
+    """A function that reads a value, also the default if that is a text."""
+    choices: tuple[str, ...] = ()
+    """All values that are allowed, if not those that `read` takes."""
+    several: bool = False
+    """Whether it takes several values."""
+    flag: bool = False
+    """Whether it takes none, and is true where it is given."""
 
 
 _MODEL = (
-    Option("--rolling", "reduced coordinates (default), joint equality (default to view), or contact", None, ROLLINGS),
+    Option(
+        "--rolling",
+        "reduced coordinates (default), joint equality (default to view), or contact",
+        choices=ROLLINGS,
+    ),
     Option(
         "--integrator",
         "MuJoCo's or mjbeer's; by default RK4, or what keeps a tolerance",
-        None,
-        MUJOCO_INTEGRATORS + MJBEER_INTEGRATORS,
+        choices=MUJOCO_INTEGRATORS + MJBEER_INTEGRATORS,
     ),
-    Option("--timestep", "timestep; with a tolerance, interval between samples [s]", Setting.timestep),
+    Option(
+        "--timestep", "timestep; with a tolerance, interval between samples [s]", Setting.timestep
+    ),
     Option("--friction", "coefficient of friction: a contact slips beyond it", Setting.friction),
 )
 _RUN = (
     Option("--duration", "duration of the motion [s]", DURATION),
-    Option("--tolerance", "largest error in phi and u/radius [rad]; a sweep without an integrator takes 1e-6"),
+    Option(
+        "--tolerance",
+        "largest error in phi and u/radius [rad]; a sweep without an integrator takes 1e-6",
+    ),
     *_MODEL,
 )
-_JSON = Option("--json", "print the results as JSON", False)
+_JSON = Option("--json", "print the results as JSON", flag=True)
 _FOLDER = "folder to write to, which is new, empty, or this command's own"
-OPTIONS = {  # of each command; if a scene comes first, these come after that of the scene
-    "simulate": (*_RUN, Option("--output", 'CSV file to write; "-" is standard output', None, Path), _JSON),
+OPTIONS = {
+    "simulate": (
+        *_RUN,
+        Option("--output", 'CSV file to write; "-" is standard output', None, Path),
+        _JSON,
+    ),
     "render": (
         *_RUN,
         Option("--output", "MP4 file to write", "mjbeer.mp4", Path),
         Option("--speed", "playback speed: 1 is real time, 0.25 is four times slower", 1.0),
         Option(
-            "--camera", "fixed, pan (moves along evenly), or auto (pan where the can would be small)", "auto", CAMERAS
+            "--camera",
+            "fixed, pan (moves along evenly), or auto (pan where the can would be small)",
+            "auto",
+            choices=CAMERAS,
         ),
         Option("--width", "width of the video [pixels]", 1280, int),
         Option("--height", "height of the video [pixels]", 720, int),
@@ -128,90 +163,184 @@ OPTIONS = {  # of each command; if a scene comes first, these come after that of
     "view": _MODEL,
     "export": (
         *_MODEL,
-        Option("--output", 'MJCF file to write (.xml); its keyframe "start" is the start', "can.xml", Path),
-        Option("--looks", "plain, in a file of 10 kB, or full, as mjbeer draws it", "plain", LOOKS),
-        Option("--portable", "write MJCF that other tools load too: docs/portability.md has each tool's error", False),
+        Option(
+            "--output",
+            'MJCF file to write (.xml); its keyframe "start" is the start',
+            "can.xml",
+            Path,
+        ),
+        Option(
+            "--looks",
+            "plain, in a file of 10 kB, or full, as mjbeer draws it",
+            "plain",
+            choices=LOOKS,
+        ),
+        Option(
+            "--portable",
+            "write MJCF that other tools load too: docs/portability.md has each tool's error",
+            flag=True,
+        ),
     ),
     "fit": (
-        Option("--free", "what is sought, of incline, fill, damping, drag; a scene's options are guesses", [], str),
-        Option("--known", "measured values with their errors, as fill=0.5±0.005 [incline in degrees]", [], known),
-        Option("--phi0", "the load's angle when it is let go: level, free, or a number [degrees]", "level", str),
-        Option("--bend", "bend of the track by a lens [m]; by default 5 mm, or 1/400 of a short way"),
-        Option("--columns", "columns by heading or number, as time=1 x=3; by default the usual headings", [], str),
+        Option(
+            "--free",
+            "what is sought, of incline, fill, damping, drag; a scene's options are guesses",
+            [],
+            str,
+            several=True,
+        ),
+        Option(
+            "--known",
+            "measured values with their errors, as fill=0.5±0.005 [incline in degrees]",
+            [],
+            known,
+            several=True,
+        ),
+        Option(
+            "--phi0",
+            "the load's angle when it is let go: level, free, or a number [degrees]",
+            "level",
+            str,
+        ),
+        Option(
+            "--bend", "bend of the track by a lens [m]; by default 5 mm, or 1/400 of a short way"
+        ),
+        Option(
+            "--columns",
+            "columns by heading or number, as time=1 x=3; by default the usual headings",
+            [],
+            str,
+            several=True,
+        ),
         Option("--rate", "pictures per second, where frames are numbered and have no times [1/s]"),
         Option("--output", "plot (.svg, .png) or film (.mp4) to write", None, Path),
         _JSON,
     ),
     "sweep": (
         *_RUN,
-        Option("--quantity", "plotted, as phi, u, error or period; files have all, the last if asked for", "phi", str),
-        Option("--output", "plot (.png, .svg), table (.csv), or NetCDF (.nc), which is resumed", "sweep.png", Path),
+        Option(
+            "--quantity",
+            "plotted, as phi, u, error or period; files have all, the last if asked for",
+            "phi",
+            str,
+        ),
+        Option(
+            "--output",
+            "plot (.png, .svg), table (.csv), or NetCDF (.nc), which is resumed",
+            "sweep.png",
+            Path,
+        ),
     ),
-    "validate": (Option("--table", "print every row, not only those that failed", False), _JSON),
-    "benchmark": (
-        Option("scenes", f"of {', '.join(CASES)}; by default all", [], str),
-        Option("--output", _FOLDER, "benchmark", Path),
-        Option("--quick", "try fewer timesteps and tolerances; takes two minutes", False),
-    ),
-    "stability": (
-        Option("--output", f"{_FOLDER}; an interrupted study in it is continued", "stability", Path),
-        Option("--quick", "coarser maps, 250 random runs, not 3000; two minutes", False),
+    "validate": (
+        Option("--table", "print every row, not only those that failed", flag=True),
         _JSON,
     ),
-    "paper": (Option("--output", _FOLDER, "paper", Path), Option("--films", "also draw films of the motions", False)),
+    "benchmark": (
+        Option("scenes", f"of {', '.join(CASES)}; by default all", [], str, several=True),
+        Option("--output", _FOLDER, "benchmark", Path),
+        Option("--quick", "try fewer timesteps and tolerances; takes four minutes", flag=True),
+    ),
+    "stability": (
+        Option(
+            "--output", f"{_FOLDER}; an interrupted study in it is continued", "stability", Path
+        ),
+        Option("--quick", "coarser maps, 250 random runs, not 3000; two minutes", flag=True),
+    ),
+    "paper": (
+        Option("--output", _FOLDER, "paper", Path),
+        Option("--films", "also draw films of the motions", flag=True),
+    ),
     "report": (
         Option("--output", _FOLDER, "report", Path),
-        Option("--quick", "draw smaller videos with fewer frames, and no films for the paper's scenarios", False),
+        Option(
+            "--quick",
+            "draw smaller videos with fewer frames, and no films for the paper's scenarios",
+            flag=True,
+        ),
     ),
 }
 
 
+"""The options of each command; those of a scene come before them."""
 _ROLLS = ("--rolling", "--friction", "--tolerance", "--camera")
 """Options that a can that stands does not have: they are those of a can that rolls."""
 
 
-def of_scene(name: str, command: str) -> list[Option]:
-    """Return the options of a scene and of its start, and then those of a command; a sweep takes several numbers."""
-    number, degrees = (numbers, angles) if command == "sweep" else (float, angle)
-    kinds = {"can": tuple(_CANS), "liquid": NAMES, "incline": degrees, "modes": int}
-    given = {each.name: each.default for each in inspect.signature((SCENES | STANDING)[name]).parameters.values()}
-    if "can" in given:
-        given |= {"can": "metal" if name == "standing" else "massless", "radius": RADIUS, "length": LENGTH}
-    if name == "liquid":
-        given["liquid"] = given["name"]
-    if "incline" in given:
-        given["incline"] = f"{math.degrees(given['incline']):.9g}"
-    own = [
-        Option("--" + each.replace("_", "-"), text, given[each], kinds.get(each, number))
-        for each, text in _MEANINGS.items()
-        if each in given
+def scene_options(name: str, command: str) -> list[Option]:
+    """Return the options of a scene and of its start, and then those of a command.
+
+    A sweep takes several numbers for each.
+    """
+    number = numbers if command == "sweep" else float
+    degrees = angles if command == "sweep" else angle
+    choices = {"can": tuple(_CANS), "liquid": NAMES}
+    reads = {"incline": degrees, "modes": int}
+    defaults = _defaults(name)
+    options = [
+        Option(
+            "--" + argument.replace("_", "-"),
+            meaning,
+            defaults[argument],
+            reads.get(argument, number),
+            choices.get(argument, ()),
+        )
+        for argument, meaning in _MEANINGS.items()
+        if argument in defaults
     ]
     if name == "standing":
-        return [*own, *(each for each in OPTIONS[command] if each.name not in _ROLLS)]
+        return options + [option for option in OPTIONS[command] if option.name not in _ROLLS]
     if command != "fit":
-        own.append(Option("--phi0", "initial phi [degrees]: 0 with the load nearest to the incline", "60", degrees))
-        own.append(Option("--phi-dot0", "initial rate of change of phi [degrees/s]", "0", degrees))
-    return [*own, *OPTIONS[command]]
+        phi0 = "initial phi [degrees]: 0 with the load nearest to the incline"
+        phi_dot0 = "initial rate of change of phi [degrees/s]"
+        options += [
+            Option("--phi0", phi0, "60", degrees),
+            Option("--phi-dot0", phi_dot0, "0", degrees),
+        ]
+    return [*options, *OPTIONS[command]]
+
+
+def _defaults(name: str) -> dict[str, Any]:
+    """Return the defaults of the options of a scene, which are those of its function in Python."""
+    parameters = inspect.signature((SCENES | STANDING)[name]).parameters.values()
+    defaults = {parameter.name: parameter.default for parameter in parameters}
+    if "can" in defaults:
+        defaults["can"] = "metal" if name == "standing" else "massless"
+        defaults["radius"] = RADIUS
+        defaults["length"] = LENGTH
+    if name == "liquid":
+        defaults["liquid"] = defaults["name"]
+    if "incline" in defaults:
+        defaults["incline"] = f"{math.degrees(defaults['incline']):.9g}"
+    return defaults
 
 
 def steps(given: Namespace) -> dict[str, Any]:
     """Return how a scene is modelled and stepped, where that is given."""
     names = ("rolling", "integrator", "timestep", "tolerance", "friction")
-    return {name: value for name, value in vars(given).items() if name in names and value is not None}
+    return {
+        name: value for name, value in vars(given).items() if name in names and value is not None
+    }
 
 
 def start(given: Namespace) -> dict[str, Any]:
-    """Return the initial phi0 [rad] and phi_dot0 [rad/s], and say so if phi0 looks like radians, as 3.14159."""
+    """Return the initial phi0 [rad] and phi_dot0 [rad/s].
+
+    If phi0 looks like radians, as 3.14159, a note says so.
+    """
     if given.scene == "standing":
         return {}
     degrees = np.round(np.degrees(given.phi0), 9)
     if degrees.ndim == 0 and abs(degrees) < 10 and round(degrees, 2) != degrees:
-        say(f"note: phi0 = {degrees:g} is taken as degrees; that many radians are {math.degrees(degrees):.6g} degrees")
+        as_radians = math.degrees(degrees)
+        say(
+            f"note: phi0 = {degrees:g} is taken as degrees; "
+            f"that many radians are {as_radians:.6g} degrees"
+        )
     return {"phi0": given.phi0, "phi_dot0": given.phi_dot0}
 
 
 def scene_arguments(given: Namespace) -> dict[str, Any]:
-    """Return the options of the scene, as `make` takes them, after a check of the one that is given in degrees."""
+    """Return the options of the scene, as `make` takes them; the incline is checked in degrees."""
     for degrees in np.degrees(getattr(given, "incline", [])).ravel():
         if not abs(degrees) < 90:
             raise ParameterError(f"incline must be between -90 and 90 [degrees], got {degrees:.9g}")
@@ -228,8 +357,9 @@ def make(function: Callable[..., Any], **options: Any) -> Any:
 
 
 def scene(given: Namespace) -> Any:
-    """Return the scene or the standing can that was asked for, and say what a liquid takes that was not given."""
+    """Return the scene or the standing can that was asked for; a liquid says what it assumes."""
     options = scene_arguments(given)
     if given.scene == "liquid":
-        say(str(make(liquid_in, **{name: value for name, value in options.items() if name != "drag"})))
+        without_drag = {name: value for name, value in options.items() if name != "drag"}
+        say(str(make(liquid_in, **without_drag)))
     return make((SCENES | STANDING)[given.scene], **options)

@@ -1,4 +1,4 @@
-"""The commands about one motion, simulate, render, view, export and fit, and the key figures that they tell."""
+"""The commands about one motion: simulate, render, view, export and fit; and its key figures."""
 
 import math
 import os
@@ -7,108 +7,166 @@ import warnings
 from argparse import Namespace
 from contextlib import nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from mjbeer.checks.as_json import json_values, to_json
 from mjbeer.cli.arguments import angle, scene, start, steps
 from mjbeer.drawing.words import damping_in_words
 from mjbeer.exceptions import LiquidWarning, MjbeerError, ParameterError, RenderingError
 from mjbeer.model.setting import FRICTION, supported
 from mjbeer.output import files, terminal
 from mjbeer.output.terminal import say
-from mjbeer.paper.checks import json_values, to_json
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import csv
 
 if TYPE_CHECKING:
     from mjbeer.simulation.run import Run
 
-KeyFigure = tuple[str, Any, str, str]  # a name, a value, its unit, and how text shows it: as a format, or in words
+
+class KeyFigure(NamedTuple):
+    """A quantity of a run that the command tells."""
+
+    name: str
+    value: Any
+    """As JSON has it."""
+    unit: str = ""
+    shown: str = "{}"
+    """How a text shows it: as a format, or in words that need no value."""
+
+    def line(self) -> str | None:
+        """Return the line of a text, or None if there is no number to show."""
+        if "{" not in self.shown:
+            return f"{self.name:<31} {self.shown}"
+        if json_values(self.value) is None:
+            return None
+        return f"{self.name:<31} {self.shown.format(self.value)} {self.unit}".rstrip()
+
+    @property
+    def key(self) -> str:
+        """The name in JSON."""
+        return f"{self.name} [{self.unit}]" if self.unit else self.name
 
 
 class Summary:
-    """The key figures of a trajectory, and until when [s] a can would roll with a coefficient of friction."""
+    """The key figures of a trajectory, and until when a can would roll with some friction."""
 
     def __init__(self, trajectory: "Run", friction: float = FRICTION) -> None:
-        self.trajectory, self.friction = trajectory, friction
-        # Where rolling needs no more than there is, this saves the run that looks for the first time at which it does.
-        enough = trajectory.record.needed_friction <= friction
-        self.rolls_until = math.inf if enough else trajectory.rolls_until(friction)
-        # Although the run is right. In contact the can simply slips, and the run's own warnings say so.
-        slips = f"a real can would slip from t = {self.rolls_until:.6g} s with a friction coefficient of {friction:g}"
-        self.notes = [slips] if trajectory.rolling != "contact" and math.isfinite(self.rolls_until) else []
+        self.trajectory = trajectory
+        self.friction = friction
+        self.rolls_until = math.inf
+        """[s]."""
+        # Where rolling needs no more than there is, the run that looks for that time is saved.
+        if trajectory.record.needed_friction > friction:
+            self.rolls_until = trajectory.rolls_until(friction)
+        self.notes: list[str] = []
+        # In contact the can simply slips, and the run's own warnings say so.
+        if trajectory.rolling != "contact" and math.isfinite(self.rolls_until):
+            self.notes.append(
+                f"a real can would slip from t = {self.rolls_until:.6g} s "
+                f"with a friction coefficient of {friction:g}"
+            )
 
     @property
-    def key_figures(self) -> tuple[KeyFigure, ...]:
+    def key_figures(self) -> list[KeyFigure]:
         """The figures in the order of the text."""
-        run, radius, until = self.trajectory, self.trajectory.scene.can.radius, self.rolls_until
-        slip, lift, normal = run.slip / radius, run.lift / radius, run.forces.normal
-        solved = not run.solver_warnings
-        holds = not (run.rolling_warnings or run.liquid_warnings or self.notes)
-        drift = None if run.scene.dissipates else run.energy_drift  # what damping and drag take is no error
-        scale = "the swing's largest kinetic energy" if run.scene.load.offset else "the largest kinetic energy"
+        run = self.trajectory
+        radius = run.scene.can.radius
+        slip = run.slip / radius
+        lift = run.lift / radius
+        normal = run.forces.normal
+        return [
+            KeyFigure("rolling", run.rolling),
+            KeyFigure("integrator", run.integrator),
+            KeyFigure("timestep", run.timestep, "s", "{:.6g}"),
+            KeyFigure("samples", len(run.time)),
+            KeyFigure("end", run.time[-1], "s", "{:.6g}"),
+            KeyFigure("phi at the end", math.degrees(run.phi[-1]), "degrees", "{:.9g}"),
+            KeyFigure("u at the end", run.u[-1], "m", "{:.9g}"),
+            _energy_drift(run),
+            KeyFigure("largest slip", np.abs(slip).max(), "radii", "{:.2e}"),
+            KeyFigure("final slip", slip[-1], "radii", "{:.2e}"),
+            KeyFigure("lowest lift", lift.min(), "radii", "{:.2e}"),
+            KeyFigure("highest lift", lift.max(), "radii", "{:.2e}"),
+            KeyFigure("least normal force needed", normal.min(), "N", "{:.4g}"),
+            KeyFigure("largest normal force needed", normal.max(), "N", "{:.4g}"),
+            _needed_friction(run),
+            self._rolls_until(),
+            *_steady_rolling(run.scene),
+            KeyFigure("estimated error of phi and u/a", run.error_estimate, "rad", "{:.2e}"),
+            _yes_or_no("equations solved", not run.solver_warnings),
+            _yes_or_no(
+                "model holds", not (run.rolling_warnings or run.liquid_warnings or self.notes)
+            ),
+        ]
+
+    def _rolls_until(self) -> KeyFigure:
+        until = self.rolls_until
         end = "the end" if math.isinf(until) else f"t = {until:.6g} s"
-        return (
-            ("rolling", run.rolling, "", "{}"),
-            ("integrator", run.integrator, "", "{}"),
-            ("timestep", run.timestep, "s", "{:.6g}"),
-            ("samples", len(run.time), "", "{}"),
-            ("end", run.time[-1], "s", "{:.6g}"),
-            ("phi at the end", math.degrees(run.phi[-1]), "degrees", "{:.9g}"),
-            ("u at the end", run.u[-1], "m", "{:.9g}"),
-            ("energy drift", drift, "", f"{{:.2e}} of {scale}"),
-            ("largest slip", np.abs(slip).max(), "radii", "{:.2e}"),
-            ("final slip", slip[-1], "radii", "{:.2e}"),
-            ("lowest lift", lift.min(), "radii", "{:.2e}"),
-            ("highest lift", lift.max(), "radii", "{:.2e}"),
-            ("least normal force needed", normal.min(), "N", "{:.4g}"),
-            ("largest normal force needed", normal.max(), "N", "{:.4g}"),
-            ("friction coefficient needed", run.record.needed_friction, "", _needed(run)),
-            ("can roll without slipping until", until, "s", f"{end} with friction {self.friction:g}"),
-            *_steady(run.scene),
-            ("estimated error of phi and u/a", run.error_estimate, "rad", "{:.2e}"),
-            ("equations solved", solved, "", "yes" if solved else "no"),
-            ("model holds", holds, "", "yes" if holds else "no"),
-        )
+        shown = f"{end} with friction {self.friction:g}"
+        return KeyFigure("can roll without slipping until", until, "s", shown)
 
     def text(self) -> str:
         """Return the figures as lines of text, without those that have no number to show."""
-        lines = [
-            f"{name:<31} {shown.format(value)} {unit}".rstrip() if "{" in shown else f"{name:<31} {shown}"
-            for name, value, unit, shown in self.key_figures
-            if "{" not in shown or json_values(value) is not None
-        ]
-        return "\n".join(lines) + "\n"
+        lines = [figure.line() for figure in self.key_figures]
+        return "\n".join(line for line in lines if line) + "\n"
 
     def json(self) -> str:
-        """Return the figures as a JSON object, with units in the names; what is not finite becomes null."""
-        content = {f"{name} [{unit}]" if unit else name: value for name, value, unit, _ in self.key_figures}
+        """Return the figures as a JSON object, units in the names; infinity and NaN are null."""
+        content = {figure.key: figure.value for figure in self.key_figures}
         content |= {"warnings": self.trajectory.warnings, "notes": self.notes}
         return to_json(content, indent=2)
 
 
-def _needed(run: "Run") -> str:
-    if math.isfinite(run.record.needed_friction):
-        return "{:.4g} to roll to the end without slipping"
-    ends = f"N < 0 from t = {run.record.rolling_ends_at:.6g} s"
-    return f"none is enough: {ends if math.isfinite(run.record.rolling_ends_at) else 'nothing presses (N = 0)'}"
+def _yes_or_no(name: str, value: bool) -> KeyFigure:
+    return KeyFigure(name, value, shown="yes" if value else "no")
 
 
-def _steady(scene: Scene) -> list[KeyFigure]:
+def _energy_drift(run: "Run") -> KeyFigure:
+    """Return the drift of the energy, which has no number where damping or drag takes energy."""
+    scale = "the swing's largest kinetic energy"
+    if not run.scene.load.offset:
+        scale = "the largest kinetic energy"
+    drift = None if run.scene.dissipates else run.energy_drift
+    return KeyFigure("energy drift", drift, shown=f"{{:.2e}} of {scale}")
+
+
+def _needed_friction(run: "Run") -> KeyFigure:
+    record = run.record
+    if math.isfinite(record.needed_friction):
+        shown = "{:.4g} to roll to the end without slipping"
+    elif math.isfinite(record.rolling_ends_at):
+        shown = f"none is enough: N < 0 from t = {record.rolling_ends_at:.6g} s"
+    else:
+        shown = "none is enough: nothing presses (N = 0)"
+    return KeyFigure("friction coefficient needed", record.needed_friction, shown=shown)
+
+
+def _steady_rolling(scene: Scene) -> list[KeyFigure]:
     """Return what takes energy from a motion, and the steady rolling to which it may come."""
     if not scene.dissipates:
         return []
-    figures: list[KeyFigure] = [("damping torque over slip rate", damping_in_words(scene), "", "{}")]
-    figures += [("drag of the air", scene.drag, "kg/m", "{:.4g}")]
+    figures = [
+        KeyFigure("damping torque over slip rate", damping_in_words(scene)),
+        KeyFigure("drag of the air", scene.drag, "kg/m", "{:.4g}"),
+    ]
     try:
-        speed, tilt, roots = scene.terminal_speed(), math.degrees(scene.terminal_tilt()), scene.modes().tolist()
-    except MjbeerError as error:  # its first clause says what there is not
-        return [*figures, ("terminal speed", None, "m/s", str(error).partition(":")[0])]
-    figures += [("terminal speed", speed, "m/s", "{:.6g}"), ("terminal tilt", tilt, "degrees", "{:.6g}")]
+        speed = scene.terminal_speed()
+        tilt = math.degrees(scene.terminal_tilt())
+        roots = scene.modes().tolist()
+    except MjbeerError as error:
+        reason, _, _ = str(error).partition(":")  # its first clause says what there is not
+        return [*figures, KeyFigure("terminal speed", None, "m/s", reason)]
     pairs = [[root.real, root.imag] for root in roots]
-    shown = ", ".join(f"{root:.4g}" if root.imag else f"{root.real:.4g}" for root in roots)
-    return [*figures, ("modes, real and imaginary parts", pairs, "1/s", f"{shown} 1/s")]
+    words = [f"{root:.4g}" if root.imag else f"{root.real:.4g}" for root in roots]
+    modes = f"{', '.join(words)} 1/s"
+    return [
+        *figures,
+        KeyFigure("terminal speed", speed, "m/s", "{:.6g}"),
+        KeyFigure("terminal tilt", tilt, "degrees", "{:.6g}"),
+        KeyFigure("modes, real and imaginary parts", pairs, "1/s", modes),
+    ]
 
 
 def trajectory_of(given: Namespace) -> "Run":
@@ -124,12 +182,16 @@ def simulate(given: Namespace) -> None:
     """Simulate a scene and print its key figures, with an estimate of the error."""
     to_output = str(given.output) == "-"
     if to_output and given.json:
-        raise ParameterError("standard output takes one of them: the JSON, or the CSV of --output -")
-    with files.atomic_write(given.output) if given.output and not to_output else nullcontext() as temporary:
+        raise ParameterError(
+            "standard output takes one of them: the JSON, or the CSV of --output -"
+        )
+    to_file = given.output and not to_output
+    with files.atomic_write(given.output) if to_file else nullcontext() as temporary:
         with terminal.status("simulating"):
             summary = Summary(trajectory_of(given), given.friction)
         if summary.trajectory.timestep is not None:
-            with terminal.status("estimating the error by a second run, which takes up to three times as long"):
+            second = "estimating the error by a second run, which takes up to three times as long"
+            with terminal.status(second):
                 _ = summary.trajectory.error_estimate
         if temporary:
             temporary.write_text(csv(summary.trajectory), encoding="utf-8")
@@ -155,7 +217,14 @@ def render(given: Namespace) -> None:
 
     trajectory = trajectory_of(given)
     _warn(Summary(trajectory, given.friction))
-    render(trajectory, given.output, given.width, given.height, speed=given.speed, camera=given.camera)
+    render(
+        trajectory,
+        given.output,
+        given.width,
+        given.height,
+        speed=given.speed,
+        camera=given.camera,
+    )
     say(f"wrote {given.output}")
 
 
@@ -174,8 +243,8 @@ def _render_standing(given: Namespace) -> None:
 def view(given: Namespace) -> None:
     """Open a scene in MuJoCo's viewer, which runs it at once.
 
-    The space bar pauses it, - and = change its speed, and F4 plots u, phi and the other sensors. The reduced model of a
-    frozen load has phi as its only coordinate, so it turns in place.
+    The space bar pauses it, - and = change its speed, and F4 plots u, phi and the other sensors.
+    The reduced model of a frozen load has phi as its only coordinate, so it turns in place.
     """
     import glfw
     import mujoco.viewer
@@ -184,12 +253,12 @@ def view(given: Namespace) -> None:
     from mjbeer.model.export import export
 
     thing = scene(given)
-    how: dict[str, Any] = start(given) | steps(given)
+    settings: dict[str, Any] = start(given) | steps(given)
     if given.scene != "standing" and supported(thing, "equality"):
-        how = {"rolling": "equality"} | how
+        settings.setdefault("rolling", "equality")
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "scene.xml"
-        export(thing, path, **how, looks="full")
+        export(thing, path, **settings, looks="full")
         model = mujoco.MjModel.from_xml_path(str(path))
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, model.key(START).id)
@@ -197,7 +266,8 @@ def view(given: Namespace) -> None:
     if not glfw.init():  # MuJoCo would end the process
         reason: Any = glfw.get_error()[1]
         raise RenderingError(
-            f"no window can be opened: {reason.decode()}; `mjbeer render` draws a video without a window, and "
+            f"no window can be opened: {reason.decode()}; `mjbeer render` draws a video without a "
+            f"window, and "
             "`mjbeer export` writes a file for MuJoCo's viewer elsewhere"
         )
     os.environ.setdefault("LP_NUM_THREADS", "0")  # see `opengl.context`
@@ -216,16 +286,20 @@ def export(given: Namespace) -> None:
         portable=given.portable,
         looks=given.looks,
     )
-    keyframe = 'its start is a keyframe: mujoco.mj_resetDataKeyframe(model, data, model.key("start").id)'
+    keyframe = (
+        'its start is a keyframe: mujoco.mj_resetDataKeyframe(model, data, model.key("start").id)'
+    )
     say(f"wrote {given.output}; {keyframe}")
 
 
 def _warn(summary: Summary) -> None:
     run = summary.trajectory
-    lines = [f"equations not solved: {warning}" for warning in run.solver_warnings]
-    lines += [f"model does not hold: {warning}" for warning in (*run.rolling_warnings, *run.liquid_warnings)]
-    for line in (*lines, *(f"note: {note}" for note in summary.notes)):
-        say(line, "yellow")
+    for warning in run.solver_warnings:
+        say(f"equations not solved: {warning}", "yellow")
+    for warning in (*run.rolling_warnings, *run.liquid_warnings):
+        say(f"model does not hold: {warning}", "yellow")
+    for note in summary.notes:
+        say(f"note: {note}", "yellow")
 
 
 def fit(given: Namespace) -> None:
@@ -235,18 +309,29 @@ def fit(given: Namespace) -> None:
 
     output, phi0 = given.output, given.phi0
     if output and output.suffix not in (".svg", ".png", ".mp4"):
-        raise ParameterError(f"the file's name must end in .svg or .png or .mp4, got {str(output)!r}")
+        raise ParameterError(
+            f"the file's name must end in .svg or .png or .mp4, got {str(output)!r}"
+        )
     try:
         phi0 = phi0 if phi0 in ("level", "free") else angle(phi0)
     except ValueError:
-        raise ParameterError(f"phi0 must be level, free, or a number [degrees], got {phi0!r}") from None
-    track = read_track(given.file, dict(each.partition("=")[::2] for each in given.columns), given.rate)
+        raise ParameterError(
+            f"phi0 must be level, free, or a number [degrees], got {phi0!r}"
+        ) from None
+    track = read_track(
+        given.file, dict(each.partition("=")[::2] for each in given.columns), given.rate
+    )
     with warnings.catch_warnings(action="ignore", category=LiquidWarning):  # of a guess
         guess = scene(given)
     with files.atomic_write(output) if output else nullcontext() as temporary:
         found = fit(track, guess, given.free or ["incline"], dict(given.known), phi0, given.bend)
         if given.json:
-            told = {"values": found.values, "errors": found.errors, "noise": found.noise, "warnings": found.warnings}
+            told = {
+                "values": found.values,
+                "errors": found.errors,
+                "noise": found.noise,
+                "warnings": found.warnings,
+            }
             terminal.write(to_json(told, indent=2))
         else:
             terminal.write("\n".join([found.title, *found.lines()]) + "\n")

@@ -18,41 +18,54 @@ from mjbeer.output.terminal import STDERR, say, show
 from mjbeer.studies.benchmark.points import CASES
 
 _PLOTS = (".png", ".svg")
-_ENDINGS = (*_PLOTS, ".csv", ".nc")
+_ENDINGS = (".png", ".svg", ".csv", ".nc")
 
 
 def sweep(given: Namespace) -> None:
-    """Simulate a scene for several values of its options, as 1,2,5, or as 1:20:39, which is 39 numbers from 1 to 20."""
+    """Simulate a scene for several values of its options, as 1,2,5 or 1:20:39 (39 from 1 to 20)."""
     from mjbeer.studies.sweep import sweep
     from mjbeer.studies.sweep_runs import STATUSES, WELL
 
     if given.output.suffix not in _ENDINGS:
-        raise ParameterError(f"the file's name must end in {' or '.join(_ENDINGS)}, got {str(given.output)!r}")
+        endings = " or ".join(_ENDINGS)
+        raise ParameterError(f"the file's name must end in {endings}, got {str(given.output)!r}")
     options = scene_arguments(given) | start(given)
-    varied = [each for each in options.values() if isinstance(each, np.ndarray)]
+    varied = [values for values in options.values() if isinstance(values, np.ndarray)]
     if given.output.suffix in _PLOTS and len(varied) not in (1, 2):
         raise ParameterError(
-            f"a plot needs one or two options with several values, got {len(varied)}: write .csv or .nc instead"
+            f"a plot needs one or two options with several values, got {len(varied)}: "
+            "write .csv or .nc instead"
         )
     if given.tolerance is None and given.integrator is None:
         given.tolerance = 1e-6
     maker = functools.partial(make, SCENES[given.scene])
-    cast("Any", maker).__module__, cast("Any", maker).__qualname__ = "mjbeer", given.scene
+    named = cast("Any", maker)
+    named.__module__ = "mjbeer"
+    named.__qualname__ = given.scene
     resumed = given.output if given.output.suffix == ".nc" else None
-    with files.atomic_write(given.output) if resumed is None else contextlib.nullcontext() as temporary:
+    with (
+        files.atomic_write(given.output) if resumed is None else contextlib.nullcontext()
+    ) as temporary:
         options |= {"quantity": given.quantity, "output": resumed, **steps(given)}
         result = sweep(maker, given.duration, **options)
         if temporary and given.output.suffix in _PLOTS:
             _plot(result, given.quantity, temporary)
         elif temporary:
-            result.to_dataframe().to_csv(temporary, float_format="%.17g", index=bool(result.dims))
+            table = result.to_dataframe()
+            table.to_csv(temporary, float_format="%.17g", index=bool(result.dims))
     for line in result.attrs["failed"].splitlines():
         say(f"failed: {line}", "yellow")  # one of each kind
     say(f"wrote {given.output}")
     status = result["status"].values
-    counts = [f"{np.count_nonzero(status == number)}: {text}" for number, text in STATUSES.items() if number in status]
+    counts = [
+        f"{np.count_nonzero(status == number)}: {text}"
+        for number, text in STATUSES.items()
+        if number in status
+    ]
     doubted = np.count_nonzero((status == WELL) & ~result["trusted"].values)
-    terminal.write("; ".join(counts + [f"{doubted}: not trusted"] * bool(doubted)) + "\n")
+    if doubted:
+        counts.append(f"{doubted}: not trusted")
+    terminal.write("; ".join(counts) + "\n")
 
 
 def validate(given: Namespace) -> int:
@@ -68,7 +81,7 @@ def validate(given: Namespace) -> int:
 
 
 def report(given: Namespace) -> int:
-    """Validate, draw films and plots, and write a page that shows it all; exit status 1 if a check fails."""
+    """Validate, draw films and plots, and write a page of all; exit status 1 if a check fails."""
     from mjbeer.report.page import write
 
     with owned(given.output, "mjbeer report"), replaced(given.output) as folder:
@@ -85,25 +98,22 @@ def benchmark(given: Namespace) -> None:
 
     names = [require.choice("scene", name, CASES) for name in given.scenes or CASES]
     with owned(given.output, "mjbeer benchmark"), replaced(given.output) as folder:
-        study = timing.conduct(names, given.quick, STDERR)
+        study = timing.run(names, given.quick, STDERR)
         benchmark_tables.write(study, folder)
     show(*benchmark_tables.tables(study))
     say(f"the study is in {given.output / 'summary.md'}")
 
 
 def stability(given: Namespace) -> int:
-    """Test stiff and extreme cases and the limits of stability, in eight minutes; exit status 1 if theory disagrees."""
+    """Test stiff cases and limits of stability, in minutes; exit status 1 if theory disagrees."""
     from mjbeer.studies.stability import stability_study as stability
 
     with owned(given.output, stability.COMMAND):
-        study = stability.conduct(given.output, given.quick, STDERR)
+        study = stability.run(given.output, given.quick, STDERR)
         with replaced(given.output) as folder:
             stability.write(study, folder)
         (given.output / stability.UNFINISHED).unlink(missing_ok=True)
-    if given.json:
-        terminal.write(stability.to_json(study))
-    else:
-        show(*stability.tables(study))
+    show(*stability.tables(study))
     for result in study.failed:
         say(f"not as it must be: {result.summary_line()}", "red")
     say(f"the study is in {given.output / 'summary.md'}")
@@ -137,18 +147,24 @@ def _plot(result: Any, quantity: str, path: Path) -> None:
     from mjbeer.output.plots import STYLE
 
     shown = _in_degrees(result[quantity].where(np.isfinite(result[quantity])))
-    shown = shown.assign_coords({name: _in_degrees(of) for name, of in shown.coords.items()})
+    shown = shown.assign_coords(
+        {name: _in_degrees(coordinate) for name, coordinate in shown.coords.items()}
+    )
     with mpl.rc_context(STYLE | {"axes.grid": shown.ndim == 1}):
         figure = Figure((7, 4.5), layout="constrained")
         axes = figure.subplots()
-        of_map = {"x": shown.dims[0], "cmap": "cividis", "center": False}
-        shown.plot(ax=axes, **(of_map if shown.ndim == 2 else {"marker": "."}))
+        if shown.ndim == 2:
+            shown.plot(ax=axes, x=shown.dims[0], cmap="cividis", center=False)
+        else:
+            shown.plot(ax=axes, marker=".")
         axes.set_title(f"{result.attrs['make']}, {result.attrs['duration']:.6g} s")
         figure.savefig(path, dpi=150)
 
 
 def _in_degrees(values: Any) -> Any:
     """Return values in degrees if they are angles or their rates."""
-    if "rad" not in (unit := values.attrs.get("units", "")):
+    unit = values.attrs.get("units", "")
+    if "rad" not in unit:
         return values
-    return (math.degrees(1) * values).assign_attrs(values.attrs | {"units": unit.replace("rad", "°")})
+    in_degrees = math.degrees(1) * values
+    return in_degrees.assign_attrs(values.attrs | {"units": unit.replace("rad", "°")})

@@ -1,1 +1,1 @@
-"""Pictures and videos of a trajectory, and a scene in MuJoCo's viewer; it imports `theory`, `output` and `model`."""
+"""Pictures and videos of a trajectory; it imports `theory`, `output` and `model`."""

@@ -10,31 +10,37 @@ from typing import Any
 
 from mjbeer.exceptions import RenderingError
 
-INSTALL = "apt-get update && apt-get install -y libegl1 libopengl0 libgl1-mesa-dri"  # on Debian and Ubuntu
+INSTALL = "apt-get update && apt-get install -y libegl1 libopengl0 libgl1-mesa-dri"
+"""What installs OpenGL on Debian and Ubuntu."""
 
 
 @functools.cache
 def context() -> Any:
-    """The off-screen OpenGL context of this process, not yet current: all that it draws shares its compiled shaders.
+    """Return the off-screen OpenGL context of this process, not yet current.
+
+    All that the process draws shares its compiled shaders.
 
     Raises:
       RenderingError: if OpenGL does not start; the message says why not and what to install.
     """
-    # Mesa's software rasterizer (llvmpipe, seen in 22.3) frees a fence while another of its threads still unlocks it,
-    # and now and then the process crashes. Without threads of its own it cannot.
+    # Mesa's software rasterizer (llvmpipe, seen in 22.3) frees a fence while another of its threads
+    # still unlocks it, and now and then the process crashes. Without threads of its own it cannot.
     os.environ.setdefault("LP_NUM_THREADS", "0")
     name = "osmesa" if os.environ.get("MUJOCO_GL", "").strip().lower() == "osmesa" else "egl"
     try:
-        # Not mujoco.GLContext: that is what MUJOCO_GL said when MuJoCo was imported, a window system's by default.
+        # Not mujoco.GLContext: that is what MUJOCO_GL said when MuJoCo was imported, a window
+        # system's by default.
         library = importlib.import_module(f"mujoco.{name}" if sys.platform == "linux" else "mujoco")
-        made = library.GLContext(16, 16)  # pictures are drawn into a buffer of MuJoCo's, of any size
+        # Pictures are drawn into a buffer of MuJoCo's, of any size.
+        opened = library.GLContext(16, 16)
     except Exception as error:  # of what kind depends on what is missing
         raise RenderingError(
-            f"no off-screen OpenGL ({name}): {error}\nEGL runs on a graphics card or without one. On Debian and "
-            f"Ubuntu this installs it:\n    {INSTALL}"
+            f"no off-screen OpenGL ({name}): {error}\n"
+            "EGL runs on a graphics card or without one. On Debian and Ubuntu this installs it:\n"
+            f"    {INSTALL}"
         ) from error
-    atexit.register(made.free)  # later it could not be freed any more
-    return made
+    atexit.register(opened.free)  # later it could not be freed any more
+    return opened
 
 
 def problem() -> str | None:
@@ -46,6 +52,8 @@ def problem() -> str | None:
     return None
 
 
-def missing(films: Sequence[str]) -> str:
-    """Return the line that names the films that are missing because there is no OpenGL, and what installs it."""
-    return f"not drawn because there is no OpenGL: {', '.join(films)}; on Debian and Ubuntu this installs it: {INSTALL}"
+def missing_films_message(films: Sequence[str]) -> str:
+    """Return the line that says which films are missing without OpenGL, and what installs it."""
+    names = ", ".join(films)
+    remedy = f"on Debian and Ubuntu this installs it: {INSTALL}"
+    return f"not drawn because there is no OpenGL: {names}; {remedy}"

@@ -14,9 +14,9 @@ import numpy as np
 from mjbeer import require
 from mjbeer.drawing import opengl, video
 from mjbeer.drawing.film import Film, RenderPlan
-from mjbeer.drawing.overlay import HEIGHT, STRIP, head
+from mjbeer.drawing.overlay import HEIGHT, STRIP, draw_title
 from mjbeer.drawing.sheet import Sheet
-from mjbeer.drawing.strip import Chart, Line, Strip
+from mjbeer.drawing.strip import Chart, ChartStrip, Line
 from mjbeer.exceptions import ParameterError, RenderingError
 from mjbeer.model.attach import surface_slope
 from mjbeer.model.build import build
@@ -98,7 +98,7 @@ class StandingFilm(Film):
         if can.moving_modes > 0:
             lines.append(Line("theory", motion.time, free_decay(can, motion.time)))
         chart = Chart("rise at the right wall [R]", lines, least=2 * QUANTITATIVE)
-        strip = Strip([chart], width, below)
+        strip = ChartStrip([chart], width, below)
         title = f"A can of {can.name} that stands"
         omega = f"{can.frequencies(1)[0] / (2 * math.pi):.2f} Hz"
         words = f"{100 * can.fill:.3g} % full; linear theory says {omega}"
@@ -108,7 +108,7 @@ class StandingFilm(Film):
                 sample = min(np.searchsorted(motion.time, time), len(motion.time) - 1)
                 data.qpos[:] = motion.qpos[sample]
                 sheet.put(camera.picture(data), top)
-                head(sheet, title, words, time, self.speed)
+                draw_title(sheet, title, words, time, self.speed)
                 strip.draw(sheet, time, height - below)
                 yield sheet.picture()
 

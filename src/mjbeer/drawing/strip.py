@@ -5,13 +5,15 @@ import dataclasses
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.transforms import BboxBase, Transform
 
 from mjbeer.drawing.sheet import Colour, Sheet
 from mjbeer.exceptions import MjbeerError
@@ -20,8 +22,9 @@ from mjbeer.theory.scene import GRAVITY
 from mjbeer.theory.trajectory import Trajectory, exact_motion
 
 _THEORY = "#b4bcc8"  # colour of theory's lines, which are wide and lie below
+_MARKED = "#fff1b8"  # ground of the times at which something happens
 _LETTERS = 1.15  # height of letters, in units
-_INTERVALS = 50  # number of intervals of a motion over which forces are averaged
+_INTERVALS = 50  # forces are means over a motion's duration divided by this
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,44 +32,40 @@ class Line:
     """A line of a chart."""
 
     name: str
-    time: np.ndarray  # times [s], shape (samples,)
-    values: np.ndarray  # values at these times
-    colour: Colour | None = None  # None for theory's line, which is seen from the beginning
+    time: np.ndarray
+    """Times [s], shape (samples,)."""
+    values: np.ndarray
+    """Values at these times."""
+    colour: Colour | None = None
+    """None for theory's line, which is seen from the beginning."""
 
 
 @dataclass(frozen=True, eq=False)
 class Chart:
     """A chart over time."""
 
-    title: str  # what it shows, with letter and unit
+    title: str
+    """What it shows, with letter and unit."""
     lines: Sequence[Line]
-    low: float = -math.inf  # least value that the chart has room for
-    high: float = math.inf  # largest value that it has room for; the blow of a landing goes beyond
-    least: float = 0.0  # least range of values that it shows: a straight line is not to look like a crooked one
+    low: float = -math.inf
+    """Least value that the chart has room for."""
+    high: float = math.inf
+    """Largest value that it has room for."""
+    least: float = 0.0
+    """Least range of values that it shows: a straight line must not look like a crooked one."""
 
 
-def charts(trajectory: Trajectory, names: Sequence[str]) -> list[Chart]:
-    """Return the charts of some quantities of a trajectory, by their names in QUANTITIES, with what theory says."""
-    theory = None
-    if trajectory.rolling != "exact" and trajectory.time[0] >= 0:
-        times = np.linspace(trajectory.time[0], trajectory.time[-1], 1500)
-        with contextlib.suppress(MjbeerError):  # a start that rounding decides has no exact motion
-            theory = exact_motion(trajectory.scene, times, trajectory.phi0, trajectory.phi_dot0)
-            rolls = theory.time <= theory.rolls_until()  # later the incline would have to pull
-            if np.count_nonzero(rolls) < 2:
-                theory = None
-    source, drawn = "exact theory" if trajectory.rolling == "exact" else "MuJoCo", []
-    for name in names:
-        title, values, limits = QUANTITIES[name]
-        lines = [Line(source, trajectory.time, values(trajectory), COLOURS[0])]
-        if theory is not None:
-            lines.append(Line("theory", theory.time[rolls], values(theory)[rolls]))
-        if name == "normal" and trajectory.rolling == "contact":
-            title = f"N [weights], {1e3 * np.ptp(trajectory.time) / _INTERVALS:.2g} ms means"
-        if (peak := lines[0].values.max()) > limits.get("high", math.inf):
-            title += f", up to {peak:.0f}"
-        drawn.append(Chart(title, lines, **limits))
-    return drawn
+class Quantity(NamedTuple):
+    """A quantity of a motion that a chart can show."""
+
+    title: str
+    """What it is, with letter and unit."""
+    values: Callable[[Trajectory], np.ndarray]
+    """Returns its values at the samples of a motion, shape (samples,)."""
+    low: float = -math.inf
+    high: float = math.inf
+    least: float = 0.0
+    """`low`, `high` and `least` are the limits of its chart, as in `Chart`."""
 
 
 def wrapped(angle: np.ndarray | float) -> np.ndarray:
@@ -74,14 +73,18 @@ def wrapped(angle: np.ndarray | float) -> np.ndarray:
     return (np.degrees(angle) + 180) % 360 - 180
 
 
-def even(motion: Trajectory, time: np.ndarray) -> np.ndarray:
-    """Return where a can would be at some times [s] that accelerates evenly [m]: the motion goes to and fro about it.
+def mean_motion(motion: Trajectory, time: np.ndarray) -> np.ndarray:
+    """Return the places [m] at some times [s] of a can that accelerates evenly.
 
-    It starts with the same momentum, and with its load at rest in it where that has an equilibrium. It has neither
-    damping nor drag: what it gains on the motion is what they cost.
+    The motion swings about it. This can starts with the same momentum, and with its load at rest in
+    it where the load has an equilibrium. It has neither damping nor drag, so that the motion falls
+    behind it by what they cost.
     """
-    scene, u, u_dot = motion.scene, motion.u[0], motion.u_dot[0]
-    scene = dataclasses.replace(scene, damping=0.0, drag=0.0) if scene.dissipates else scene
+    scene = motion.scene
+    u = motion.u[0]
+    u_dot = motion.u_dot[0]
+    if scene.dissipates:
+        scene = dataclasses.replace(scene, damping=0.0, drag=0.0)
     if scene.attachment == "sliding":
         swing = scene.load.moment / scene.effective_mass
         u = u - swing * (math.sin(motion.phi[0]) - math.sin(scene.equilibrium()))
@@ -90,100 +93,217 @@ def even(motion: Trajectory, time: np.ndarray) -> np.ndarray:
     return u + u_dot * since + scene.acceleration() * since**2 / 2
 
 
-def forces(motion: Trajectory) -> np.ndarray:
-    """Return the normal force and the friction, positive up the incline, also while the can slips or is in the air.
+class MeanForces(NamedTuple):
+    """Forces of the incline on the can, in weights of can and load, shape (samples,)."""
 
-    They are in weights of can and load, without gravity those on earth, with the shape (2, samples). They follow from
-    the change of the momentum over a fiftieth of the motion: a can that hardly presses on the ground rises and lands
-    many times a second, and each landing is a blow.
+    normal: np.ndarray
+    friction: np.ndarray
+    """It is positive up the incline."""
+
+
+def mean_forces(motion: Trajectory) -> MeanForces:
+    """Return the mean forces around each sample, also of a can that slips or flies.
+
+    They follow from the change of momentum over a fiftieth of the motion. A can that hardly presses
+    on the ground rises and lands many times a second, and each landing is a blow. Without gravity
+    the unit is the weight on earth.
     """
-    scene, time, load = motion.scene, motion.time, motion.scene.load.moment
-    across = scene.mass * motion.lift_dot + load * np.sin(motion.phi) * motion.phi_dot
-    along = scene.mass * motion.u_dot - load * np.cos(motion.phi) * motion.phi_dot
+    scene = motion.scene
+    moment = scene.load.moment
+    away = scene.mass * motion.lift_dot + moment * np.sin(motion.phi) * motion.phi_dot
+    downhill = scene.mass * motion.u_dot - moment * np.cos(motion.phi) * motion.phi_dot
+    weight = scene.mass * scene.gravity
+    normal = weight * math.cos(scene.incline) + _mean_rate(motion.time, away)
+    friction = weight * math.sin(scene.incline) + _mean_rate(motion.time, -downhill)
+    unit = scene.mass * (scene.gravity or GRAVITY)
+    return MeanForces(normal / unit, friction / unit)
+
+
+def _mean_rate(time: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Return the mean rate of change of values around each time."""
     half = np.ptp(time) / _INTERVALS / 2
-    first, last = np.maximum(time - half, time[0]), np.minimum(time + half, time[-1])
-    ends = [[np.interp(end, time, momentum) for end in (first, last)] for momentum in (across, -along)]
-    gravity = scene.mass * scene.gravity * np.array([[math.cos(scene.incline)], [math.sin(scene.incline)]])
-    return (gravity + np.diff(ends, axis=1)[:, 0] / (last - first)) / (scene.mass * (scene.gravity or GRAVITY))
+    before = np.maximum(time - half, time[0])
+    after = np.minimum(time + half, time[-1])
+    return (np.interp(after, time, values) - np.interp(before, time, values)) / (after - before)
 
 
-QUANTITIES: dict[str, tuple[str, Callable[[Trajectory], np.ndarray], dict[str, float]]] = {
-    "phi": ("angle of the load, φ [°]", lambda motion: wrapped(motion.phi), {"least": 10.0}),
-    "u": ("distance [m]", lambda motion: motion.u - motion.u[0], {}),
-    "u_dot": ("speed [m/s]", lambda motion: motion.u_dot, {}),
-    "ahead": ("ahead of even acceleration [mm]", lambda motion: 1e3 * (motion.u - even(motion, motion.time)), {}),
-    "normal": ("normal force, N [weights]", lambda motion: forces(motion)[0], {"low": -1.0, "high": 4.0}),
-    "lift": ("height of flight [mm]", lambda motion: 1e3 * motion.lift, {}),
-    "slip": ("slid instead of rolled [mm]", lambda motion: 1e3 * (motion.slip - motion.slip[0]), {}),
+QUANTITIES = {
+    "phi": Quantity("angle of the load, φ [°]", lambda motion: wrapped(motion.phi), least=10.0),
+    "u": Quantity("distance [m]", lambda motion: motion.u - motion.u[0]),
+    "u_dot": Quantity("speed [m/s]", lambda motion: motion.u_dot),
+    "ahead": Quantity(
+        "ahead of even acceleration [mm]",
+        lambda motion: 1e3 * (motion.u - mean_motion(motion, motion.time)),
+    ),
+    "normal": Quantity(
+        "normal force, N [weights]",
+        lambda motion: mean_forces(motion).normal,
+        low=-1.0,
+        high=4.0,  # the blow of a landing goes beyond
+    ),
+    "lift": Quantity("height of flight [mm]", lambda motion: 1e3 * motion.lift),
+    "slip": Quantity(
+        "slid instead of rolled [mm]", lambda motion: 1e3 * (motion.slip - motion.slip[0])
+    ),
 }
-"""What a chart can show, by name: its title, its values, shape (samples,), and the chart's limits."""
+"""What a chart can show, by name."""
 
 
-class Strip:
-    """Charts side by side. Lines with a colour are drawn up to now; theory's may be there from the beginning."""
+def charts(trajectory: Trajectory, names: Sequence[str]) -> list[Chart]:
+    """Return the charts of quantities named in QUANTITIES, with what theory says."""
+    theory = _theory(trajectory)
+    return [_chart(trajectory, theory, name) for name in names]
+
+
+def _chart(trajectory: Trajectory, theory: Trajectory | None, name: str) -> Chart:
+    quantity = QUANTITIES[name]
+    source = "exact theory" if trajectory.rolling == "exact" else "MuJoCo"
+    values = quantity.values(trajectory)
+    lines = [Line(source, trajectory.time, values, COLOURS[0])]
+    if theory is not None:
+        rolls = _rolls(theory)
+        lines.append(Line("theory", theory.time[rolls], quantity.values(theory)[rolls]))
+    title = quantity.title
+    if name == "normal" and trajectory.rolling == "contact":
+        window = np.ptp(trajectory.time) / _INTERVALS
+        title = f"N [weights], {1e3 * window:.2g} ms means"
+    if values.max() > quantity.high:
+        title += f", up to {values.max():.0f}"
+    return Chart(title, lines, quantity.low, quantity.high, quantity.least)
+
+
+def _theory(trajectory: Trajectory) -> Trajectory | None:
+    """Return the exact motion from the start of a simulated one; None if there is none to show."""
+    if trajectory.rolling == "exact" or trajectory.time[0] < 0:
+        return None
+    times = np.linspace(trajectory.time[0], trajectory.time[-1], 1500)
+    with contextlib.suppress(MjbeerError):  # a start that rounding decides has no exact motion
+        theory = exact_motion(trajectory.scene, times, trajectory.phi0, trajectory.phi_dot0)
+        if np.count_nonzero(_rolls(theory)) >= 2:
+            return theory
+    return None
+
+
+def _rolls(theory: Trajectory) -> np.ndarray:
+    """Return at which samples the can rolls: later the incline would have to pull it."""
+    return theory.time <= theory.rolls_until()
+
+
+class ChartStrip:
+    """Charts side by side.
+
+    Lines with a colour are drawn up to now. Theory's lines are there from the beginning.
+    """
 
     def __init__(
-        self, charts: Sequence[Chart], width: int, height: int, marked: Sequence[tuple[float, float]] = ()
+        self,
+        charts: Sequence[Chart],
+        width: int,
+        height: int,
+        marked: Sequence[tuple[float, float]] = (),
     ) -> None:
-        """Prepare to draw charts, in which some spans of time are `marked`."""
-        self._charts, self._height, self._unit, self._marked = charts, height, height / 10, marked
+        """Prepare to draw charts in which some spans of time [s] are `marked`."""
+        self._charts = charts
+        self._height = height
+        self._unit = height / 10
         letters = _LETTERS * self._unit
-        sizes = {"font.size": letters, "legend.fontsize": letters, "axes.titlesize": letters}
-        with rc_context(STYLE | sizes | {"axes.linewidth": 0.06 * self._unit, "font.family": "DejaVu Sans"}):
+        style: dict[str, Any] = {
+            "font.family": "DejaVu Sans",
+            "font.size": letters,
+            "legend.fontsize": letters,
+            "axes.titlesize": letters,
+            "axes.linewidth": 0.06 * self._unit,
+        }
+        with rc_context(STYLE | style):
             figure = Figure(figsize=(width / 72, height / 72), dpi=72)
             canvas = FigureCanvasAgg(figure)
             panels = figure.subplots(1, len(charts), squeeze=False)[0]
-            sides = {"left": 4.5 * letters / width, "right": 1 - 2 * letters / width}
-            between = 6 * letters / (width / len(charts) - 6 * letters)
-            figure.subplots_adjust(**sides, top=1 - 1.8 * letters / height, bottom=3 * letters / height, wspace=between)
-            drawn = [line for pair in zip(panels, charts, strict=True) for line in self._draw(*pair)]
-            handles, names = panels[0].get_legend_handles_labels()
-            if len(named := dict(zip(names, handles, strict=True))) > 1:
-                room: Any = {"borderaxespad": 0.1, "borderpad": 0, "handlelength": 1.2, "columnspacing": 1.0}
-                room["bbox_to_anchor"] = (1 - self._unit / width, 0.0)
-                figure.legend(named.values(), named, loc="lower right", ncols=4, **room)
+            figure.subplots_adjust(
+                left=4.5 * letters / width,
+                right=1 - 2 * letters / width,
+                top=1 - 1.8 * letters / height,
+                bottom=3 * letters / height,
+                wspace=6 * letters / (width / len(charts) - 6 * letters),
+            )
+            moving = []
+            for panel, chart in zip(panels, charts, strict=True):
+                for first, last in marked:
+                    panel.axvspan(first, last, color=_MARKED, linewidth=0)
+                moving += self._draw_panel(panel, chart)
+            self._add_key(figure, panels[0], width)
             canvas.draw()
             self._beginning = np.array(canvas.buffer_rgba())
-            for line in drawn:
+            for line in moving:
                 figure.draw_artist(line)
             self._complete = np.array(canvas.buffer_rgba())
-            self._panels = [(panel.transData, panel.get_window_extent()) for panel in panels]
+        self._panels: list[tuple[Transform, BboxBase]] = [
+            (panel.transData, panel.get_window_extent()) for panel in panels
+        ]
 
-    def _draw(self, panel: Axes, chart: Chart) -> list:
-        """Draw a chart but for the lines that are to be seen up to now only, and return those."""
+    def _draw_panel(self, panel: Axes, chart: Chart) -> list[Line2D]:
+        """Draw a chart without the lines that are seen up to now only, and return those."""
         unit = self._unit
         for line in sorted(chart.lines, key=lambda line: line.colour is not None):
-            style: dict[str, Any] = {"color": line.colour or _THEORY, "animated": line.colour is not None}
-            width = (0.18 if line.colour else 0.5) * unit
-            panel.plot(line.time, unbroken(line.values), **style, linewidth=width, label=line.name)
-        for first, last in self._marked:
-            panel.axvspan(first, last, color="#fff1b8", linewidth=0)
+            panel.plot(
+                line.time,
+                unbroken(line.values),
+                color=line.colour or _THEORY,
+                animated=line.colour is not None,
+                linewidth=(0.18 if line.colour else 0.5) * unit,
+                label=line.name,
+            )
         panel.set_title(chart.title, pad=0.45 * unit)
         panel.xaxis.set_major_formatter("{x:g} s")
-        panel.set_xlim(min(line.time[0] for line in chart.lines), max(line.time[-1] for line in chart.lines))
+        start = min(line.time[0] for line in chart.lines)
+        end = max(line.time[-1] for line in chart.lines)
+        panel.set_xlim(start, end)
         low, high = panel.get_ylim()
         room = max(0.0, chart.least - (high - low)) / 2
         panel.set_ylim(max(low - room, chart.low), min(high + room, chart.high))
         panel.tick_params(pad=0.25 * unit, length=0.3 * unit)
         return [line for line in panel.lines if line.get_animated()]
 
+    def _add_key(self, figure: Figure, panel: Axes, width: int) -> None:
+        """Name the lines below the charts, unless all have one name."""
+        handles, names = panel.get_legend_handles_labels()
+        named = dict(zip(names, handles, strict=True))
+        if len(named) > 1:
+            figure.legend(
+                named.values(),
+                named,
+                loc="lower right",
+                bbox_to_anchor=(1 - self._unit / width, 0.0),
+                ncols=4,
+                borderaxespad=0.1,
+                borderpad=0,
+                handlelength=1.2,
+                columnspacing=1.0,
+            )
+
     def draw(self, sheet: Sheet, time: float, top: int) -> None:
         """Draw the strip as it is at a `time` [s], with its upper edge at a row of the sheet."""
         shown = self._beginning.copy()
         for transform, extent in self._panels:
-            left, now = int(extent.x0), int(transform.transform((time, 0))[0])
+            left = int(extent.x0)
+            now = int(transform.transform((time, 0))[0])
             shown[:, left:now] = self._complete[:, left:now]
         sheet.put(shown, top)
         for (transform, extent), chart in zip(self._panels, self._charts, strict=True):
             for line in chart.lines:
-                value = line.values[max(int(np.searchsorted(line.time, time, side="right")) - 1, 0)]
-                column, up = transform.transform((min(time, line.time[-1]), value))
+                sample = max(int(np.searchsorted(line.time, time, side="right")) - 1, 0)
+                place = (min(time, line.time[-1]), line.values[sample])
+                column, up = transform.transform(place)
                 if line.colour and extent.y0 - 1 <= up <= extent.y1 + 1:
-                    sheet.disc(np.array([column, top + self._height - up]), 0.5 * self._unit, line.colour)
+                    dot = np.array([column, top + self._height - up])
+                    sheet.disc(dot, 0.5 * self._unit, line.colour)
 
 
 def unbroken(values: np.ndarray) -> np.ndarray:
-    """Return values with a gap wherever they jump by more than half of their range, as a wrapped angle does."""
+    """Return values with a gap (NaN) where they jump, as a wrapped angle does.
+
+    A jump is a change of more than half of their range.
+    """
     finite = values[np.isfinite(values)]
-    jumps = np.abs(np.diff(values, prepend=values[:1])) > (np.ptp(finite) / 2 if len(finite) else 0)
+    limit = np.ptp(finite) / 2 if len(finite) else 0
+    jumps = np.abs(np.diff(values, prepend=values[:1])) > limit
     return np.where(jumps, np.nan, values)

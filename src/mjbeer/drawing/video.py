@@ -1,4 +1,4 @@
-"""Films as files: MP4 by mediapy, whole or not at all; in a notebook; and many at once, with plots."""
+"""Films as files: MP4 by mediapy, whole or not at all; in a notebook; and as jobs, with plots."""
 
 import contextlib
 import errno
@@ -6,36 +6,42 @@ import io
 import os
 import pathlib
 import re
-import warnings
-from collections.abc import Callable, Generator, Sequence
-from concurrent.futures import as_completed
-from concurrent.futures.process import BrokenProcessPool
+from collections.abc import Callable, Generator
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import rich.console
 from PIL import Image
 
 from mjbeer import require
 from mjbeer.drawing.camera import CAMERAS, Camera
 from mjbeer.drawing.film import Film, MotionFilm, RenderPlan
-from mjbeer.drawing.overlay import Look
+from mjbeer.drawing.style import FilmStyle
 from mjbeer.exceptions import ParameterError, RenderingError
 from mjbeer.output import files, terminal
 from mjbeer.output.plots import Picture
 from mjbeer.theory.trajectory import Trajectory
 
 _LARGEST = 4096  # largest width and height [pixels] that H.264 encoders support
-_RATE = 23  # the rate factor of a file, ffmpeg's default: at 18 no loss is visible, and at 24 letters are still sharp
-_ENCODED = (  # what ffmpeg is told besides
+_RATE_FACTOR = 23
+"""The rate factor of a file, ffmpeg's default: at 18 no loss is visible, and at 24 letters are
+still sharp."""
+_FFMPEG_OPTIONS = [
     # HD colours (BT.709), which players expect; the default are those of SD television.
-    *("-vf", "scale=out_color_matrix=bt709:out_range=tv"),
-    # A search for motion that is quick and not deep: files are a sixth larger, and take a quarter less time.
-    *("-preset", "veryfast", "-x264-params", "bframes=0:me=dia:subme=1:ref=1:weightp=0:threads=1"),
-    *("-movflags", "+faststart"),  # a player can start before it has loaded the whole file
-)
-_DISK = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)  # ffmpeg prints the system's message for them
+    "-vf",
+    "scale=out_color_matrix=bt709:out_range=tv",
+    # A search for motion that is quick and not deep: files are a sixth larger, and take a quarter
+    # less time.
+    "-preset",
+    "veryfast",
+    "-x264-params",
+    "bframes=0:me=dia:subme=1:ref=1:weightp=0:threads=1",
+    # A player can start before it has loaded the whole file.
+    "-movflags",
+    "+faststart",
+]
+_DISK_ERRORS = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
+"""What can be wrong with a disk; ffmpeg prints the system's messages for these."""
 
 
 def render(
@@ -48,15 +54,18 @@ def render(
     camera: Camera = "auto",
     progress: bool = True,
 ) -> None:
-    """Write a trajectory as a video, MP4 with H.264; if that fails, no file is left and an existing one is kept.
+    """Write a trajectory as a video, MP4 with H.264.
 
-    Where `path` is None it is shown in a notebook. `width` and `height` are in pixels, `fps` in frames per second of
-    the video; `speed` is 1 for real time, 0.25 for four times slower. `camera` is "fixed" (it stands still and shows
-    the whole motion), "pan" (it moves with a constant acceleration), or "auto" (fixed, unless the can would be too
-    small). If `progress` is true and standard error is a terminal, it shows a progress bar.
+    If that fails, no file is left, and an existing one is kept.
 
-    Where the equations of a run were not solved, each picture says so. A run of a fixed timestep is judged by a second
-    one, which takes twice its time.
+    Where `path` is None it is shown in a notebook. `width` and `height` are in pixels, `fps` in
+    frames per second of the video; `speed` is 1 for real time, 0.25 for four times slower. `camera`
+    is "fixed" (it stands still and shows the whole motion), "pan" (it moves with a constant
+    acceleration), or "auto" (fixed, unless the can would be too small). If `progress` is true and
+    standard error is a terminal, it shows a progress bar.
+
+    Where the equations of a run were not solved, each picture says so. A run of a fixed timestep is
+    judged by a second one, which takes twice its time.
 
     Raises:
       ParameterError: if a parameter is not allowed.
@@ -65,53 +74,91 @@ def render(
     """
     target = None if path is None else require.path(path)
     if target and target.suffix.lower() != ".mp4":
-        raise ParameterError(f"the file's name must end in .mp4, got {require.format_value(str(path))}")
-    console = terminal.STDERR if require.choice("progress", progress, (True, False)) else None
+        name = require.format_value(str(path))
+        raise ParameterError(f"the file's name must end in .mp4, got {name}")
+    require.choice("progress", progress, (True, False))
+    console = terminal.STDERR if progress else None
     require.instance("trajectory", trajectory, Trajectory)
     require.choice("camera", camera, CAMERAS)
-    film = MotionFilm(lambda: trajectory, Look.usual(trajectory, camera), speed=speed).plan()
+    style = FilmStyle.usual(trajectory, camera)
+    plan = MotionFilm(lambda: trajectory, style, speed=speed).plan()
     if target is None:
-        with contextlib.closing(_pictures(film, width, height, fps)) as pictures, _mediapy() as mediapy:
+        with (
+            contextlib.closing(_pictures(plan, width, height, fps)) as pictures,
+            _mediapy() as mediapy,
+        ):
             mediapy.show_video(pictures, fps=fps, autoplay=False)
         return
-    with terminal.progress_bar(console, len(film.times(fps))) as begin:
-        write(film, target, width, height, fps, begin)
+    with terminal.progress_bar(console, len(plan.times(fps))) as begin:
+        write(plan, target, width, height, fps, begin)
 
 
 def write(
-    plan: RenderPlan, path: pathlib.Path, width: int, height: int, fps: float, begin: Callable[[str], Any] = str
+    plan: RenderPlan,
+    path: pathlib.Path,
+    width: int,
+    height: int,
+    fps: float,
+    begin: Callable[[str], Any] = str,
 ) -> None:
-    """Write a film as a video, as `render` does, picture by picture; `begin` gets the words of a progress bar."""
+    """Write a film as `render` does; `begin` gets the words of a progress bar."""
     with (
         files.atomic_write(path) as temporary,
         contextlib.closing(_pictures(plan, width, height, fps)) as pictures,
         _mediapy() as mediapy,
     ):
-        shape = int(height), int(width)
-        writer = mediapy.VideoWriter(temporary, shape, fps=fps, crf=_RATE, ffmpeg_args=_ENCODED)
+        writer = mediapy.VideoWriter(
+            temporary,
+            (int(height), int(width)),
+            fps=fps,
+            crf=_RATE_FACTOR,
+            ffmpeg_args=_FFMPEG_OPTIONS,
+        )
+        writer.__enter__()
         try:
-            with writer:
+            try:
                 for picture in pictures:
                     begin(f"drawing {path.name}")
                     writer.add_image(picture)
-        except BrokenPipeError:
-            writer.close()  # which now raises what ffmpeg said
+            except BrokenPipeError:
+                writer.close()  # which now raises what ffmpeg said
+                raise
+            writer.close()
+        except BaseException:
+            _kill_ffmpeg(writer)
             raise
 
 
+def _kill_ffmpeg(writer: Any) -> None:
+    """End the ffmpeg of a `mediapy.VideoWriter`: to close the writer is to wait for it, and it may hang."""
+    process = writer._proc
+    if process is None:
+        return
+    process.kill()
+    process.wait()
+    with contextlib.suppress(OSError):  # the last picture has no reader now
+        process.stdin.close()
+    process.stderr.close()
+
+
 def _pictures(plan: RenderPlan, width: int, height: int, fps: float) -> Generator[np.ndarray]:
-    for name, pixels in (("width", width), ("height", height)):
-        if require.positive(name, pixels) % 2 or pixels > _LARGEST:
-            raise ParameterError(
-                f"{name} must be an even number of pixels up to {_LARGEST}, as H.264 wants it, "
-                f"got {require.format_value(pixels)}"
-            )
+    _check_size("width", width)
+    _check_size("height", height)
     return plan.draw(plan.times(fps), int(width), int(height))
+
+
+def _check_size(name: str, pixels: int) -> None:
+    require.positive(name, pixels)
+    if pixels % 2 or pixels > _LARGEST:
+        raise ParameterError(
+            f"{name} must be an even number of pixels up to {_LARGEST}, as H.264 wants it, "
+            f"got {require.format_value(pixels)}"
+        )
 
 
 @contextlib.contextmanager
 def _mediapy() -> Generator[Any]:
-    """Yield mediapy with the ffmpeg of imageio-ffmpeg; what fails in the block is told as ffmpeg's fault."""
+    """Yield mediapy with the ffmpeg of imageio-ffmpeg, and raise what fails as ffmpeg's fault."""
     import imageio_ffmpeg
     import mediapy  # which loads matplotlib and IPython: half a second that only films take
 
@@ -119,15 +166,20 @@ def _mediapy() -> Generator[Any]:
         mediapy.set_ffmpeg(imageio_ffmpeg.get_ffmpeg_exe())
         yield mediapy
     except (OSError, RuntimeError) as error:
-        if not isinstance(error.__context__, OSError | RuntimeError | None):  # drawing failed, or Ctrl-C ended both
-            raise error.__context__ from None
-        said = re.sub("^Error writing '.*?': ", "", str(error)).strip()  # mediapy's words, before those of ffmpeg
-        for number in _DISK:
-            if os.strerror(number) in said:
+        cause = error.__context__
+        if not isinstance(
+            cause, OSError | RuntimeError | None
+        ):  # drawing failed, or Ctrl-C ended both
+            raise cause from None
+        # Without mediapy's words, which come before those of ffmpeg.
+        messages = re.sub("^Error writing '.*?': ", "", str(error)).strip()
+        for number in _DISK_ERRORS:
+            if os.strerror(number) in messages:
                 raise OSError(number, os.strerror(number)) from error
-        reason = (said or "it ended before the video did").splitlines()[-1]
+        reason = messages.splitlines()[-1] if messages else "it ended before the video did"
         raise RenderingError(
-            f"ffmpeg did not write the video: {reason}\nReinstall it (`pip install --force-reinstall imageio-ffmpeg`), "
+            f"ffmpeg did not write the video: {reason}\n"
+            "Reinstall it (`pip install --force-reinstall imageio-ffmpeg`), "
             "or name another in IMAGEIO_FFMPEG_EXE"
         ) from error
 
@@ -137,17 +189,23 @@ class FilmJob:
     """A film to be written."""
 
     film: Film
-    path: pathlib.Path  # its file, whose name ends in .mp4
+    path: pathlib.Path
+    """Its file, whose name ends in .mp4."""
     width: int
+    """[pixels]."""
     height: int
+    """[pixels]."""
     fps: float
+    """Pictures per second of the video."""
 
     def write(self) -> bytes:
         """Write the film, and return its still picture as WebP."""
-        plan, file = self.film.plan(), io.BytesIO()
-        still = self.film.still or (2 * plan.start + plan.end) / 3  # at the start nothing has happened yet
+        plan = self.film.plan()
         write(plan, self.path, self.width, self.height, self.fps)
+        # At the start nothing has happened yet.
+        still = self.film.still or (2 * plan.start + plan.end) / 3
         (picture,) = plan.draw(np.array([still]), self.width, self.height)
+        file = io.BytesIO()
         Image.fromarray(picture).save(file, "WEBP", quality=70)
         return file.getvalue()
 
@@ -156,39 +214,14 @@ class FilmJob:
 class PlotJob:
     """A plot to be drawn."""
 
-    draw: Callable[[Any], None]  # writes the plot to a path, with .svg appended, or into a `Picture`
+    draw: Callable[[Any], None]
+    """Writes the plot to a path, with .svg appended, or into a `Picture`."""
     path: pathlib.Path
     in_memory: bool = False
+    """Whether the plot is returned, and no file is written."""
 
     def write(self) -> Picture | None:
         """Write the plot, or return it."""
         picture = Picture(self.path.name) if self.in_memory else None
         self.draw(picture or self.path)
         return picture
-
-
-def produce(orders: Sequence[Any], console: rich.console.Console) -> list[Any]:
-    """Write what is ordered, with a progress bar, and return what the orders' `write` returns; begin with the first.
-
-    An order can be pickled, and has a `path`: its file, which it writes whole or not at all, or one of its name. A
-    process that is ended while it writes leaves a hidden file beside it: the folder must be one that goes then.
-
-    Raises:
-      RenderingError: if ffmpeg or OpenGL does not work, or a process dies; the message says what to do.
-      OutputError: if a file cannot be written.
-    """
-    try:
-        with terminal.progress_bar(console, len(orders)) as begin, files.pool(len(orders)) as executor:
-            futures = {executor.submit(_done, order): order for order in orders}
-            for future in as_completed(futures):
-                future.result()
-                begin(f"made {futures[future].path.name}")
-            return [future.result() for future in futures]
-    except BrokenProcessPool as error:
-        raise RenderingError("a process that drew or checked died; is memory short?") from error
-
-
-def _done(order: Any) -> Any:
-    """Write what is ordered, without mjbeer's warnings: reports show on purpose what cannot be trusted."""
-    with warnings.catch_warnings(action="ignore", category=UserWarning):
-        return order.write()

@@ -1,4 +1,4 @@
-"""Methods that move a MuJoCo model: they know the model, and nothing of the theory that judges them."""
+"""Methods that move a MuJoCo model. They know nothing of the theory that judges them."""
 
 from typing import Protocol
 
@@ -18,7 +18,9 @@ class Method(Protocol):
     name: str
     """The name of the method, as in `simulate(integrator=...)`."""
 
-    def run(self, start: np.ndarray, times: np.ndarray, observer: Observer | None = None) -> np.ndarray:
+    def run(
+        self, start: np.ndarray, times: np.ndarray, observer: Observer | None = None
+    ) -> np.ndarray:
         """Return the states at increasing `times` [s], shape (samples, nq + nv).
 
         The motion begins at time 0 with the state `start`, shape (nq + nv,).

@@ -1,6 +1,7 @@
-"""How numba compiles the functions that step a model: who may call them, and where their code is kept.
+"""How numba compiles the functions that step a model, and where their code is kept.
 
-numba takes longer to import than everything else together, so that only what needs compiled code imports this file.
+numba takes longer to import than everything else together, so that only what needs compiled code
+imports this file.
 """
 
 import gc
@@ -28,12 +29,15 @@ kernel = partial(compile_and_keep, **_OPTIONS)
 compiled = partial(njit, no_cpython_wrapper=True, **_OPTIONS)
 """Decorates what only compiled code calls."""
 inlined = partial(compiled, forceinline=True)
-"""Decorates what is compiled into its callers: what is so short that a call would take as long as its work."""
+"""Decorates what is compiled into its callers: a call would take as long as its work."""
 
 
 @intrinsic
 def optimize_for_size(typing_context):
-    """Have the calling function compiled to little code: its loops are short, and unrolling them takes seconds."""
+    """Have the calling function compiled to little code.
+
+    Its loops are short, and unrolling them would take seconds.
+    """
 
     def generate(context, builder, signature, arguments):
         builder.function.attributes.add("optsize")
@@ -46,7 +50,8 @@ def optimize_for_size(typing_context):
 def call_c(typing_context, function, model, data):
     """Call the C function of an mjModel and an mjData at the address `function`.
 
-    The addresses are arguments, and not compiled in, so that the code can be kept for other processes.
+    The addresses are arguments, and not compiled in, so that the code can be kept for other
+    processes.
     """
 
     def generate(context, builder, signature, arguments):
@@ -60,7 +65,10 @@ def call_c(typing_context, function, model, data):
 
 @contextmanager
 def announced() -> Generator[None]:
-    """Print a notice in a terminal if compiling takes over a second; loading kept code prints none."""
+    """Print a notice in a terminal if compiling takes over a second.
+
+    Loading kept code prints none.
+    """
 
     def notify() -> None:
         from mjbeer.output import terminal  # takes a tenth of a second to import

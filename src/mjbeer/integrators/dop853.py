@@ -1,7 +1,8 @@
-"""The integrator DOP853: an eighth-order Runge-Kutta method around MuJoCo's forward dynamics, in compiled code.
+"""The integrator DOP853: an eighth-order Runge-Kutta method around MuJoCo's accelerations.
 
-The twelve stages, the error estimate and the seventh-order continuous output are those of E. Hairer, S. P. Norsett and
-G. Wanner, Solving Ordinary Differential Equations I, section II.10 (coefficients in dop853.txt).
+The twelve stages, the error estimate and the seventh-order continuous output are those of
+E. Hairer, S. P. Norsett and G. Wanner, Solving Ordinary Differential Equations I, section II.10.
+Their coefficients are in dop853.txt, and everything that takes steps is compiled code.
 """
 
 import math
@@ -27,10 +28,11 @@ from mjbeer.integrators.dynamics import (
 )
 from mjbeer.model.mujoco_library import MAX_STATE, quiet
 
-# SciPy has these numbers too, but to import scipy.integrate takes longer than all other imports together.
+# SciPy has these numbers, too, but its import takes longer than all others together.
 _TABLEAU = np.loadtxt(pathlib.Path(__file__).with_suffix(".txt"))
 _END = 12
-"""Index of the stage at the end of the step: twelve are before it, and three for the continuous output after it."""
+"""Index of the stage at the end of the step: twelve come before it, and after it three for the
+continuous output."""
 _STAGES = 16
 _THIRD_ORDER_ERROR = 16
 """Row of the tableau with the error by the embedded formula of third order."""
@@ -49,12 +51,13 @@ _SHRINK = 0.2
 _GROW = 10.0
 """Largest ratio of a step to the one before."""
 _MEMORY = 0.04
-"""Power (beta) of the error of the step before in the next one: it saves two of three rejected steps."""
+"""Power (beta) of the error of the step before in the next one: it saves two of three rejected
+steps."""
 _LEAST_ERROR = 1e-4
 """Smallest error of the step before that counts."""
 _LEAST_NEW_ERROR = 1e-12
-"""Smallest error of the step itself that counts: without any error the next step would be infinite. At this error it is
-already about `_GROW` times as long."""
+"""Smallest error of the step itself that counts: without any error the next step would be infinite.
+At this error it is already about `_GROW` times as long."""
 _SHORTEST = 4e-16
 """Shortest step divided by the time that has passed: with a shorter one time stands still."""
 _SHORTEST_AT_START = 1e-200
@@ -66,9 +69,11 @@ _BLOCK = 20_000
 _HALVINGS = 30
 """Halvings of a step in which a corner is looked for: to 1e-9 of it."""
 _AT_AN_END = 1e-6
-"""Share of a step within which a corner is at its end. A torque with the square of the rate is then 1e-12 off there."""
+"""Share of a step within which a corner is at its end. A torque with the square of the rate is then
+1e-12 off there."""
 _ROUNDING = 32 * float(np.finfo(float).eps)
-"""Size of a sum of rates that may be the rounding of its terms, divided by the sum of their sizes."""
+"""Size of a sum of rates that may be the rounding of its terms, divided by the sum of their
+sizes."""
 
 
 class _Control(NamedTuple):
@@ -108,11 +113,12 @@ class _Place(NamedTuple):
 class DOP853:
     """The DOP853 method around the forward dynamics of a model of slides and hinges.
 
-    With a `timestep` [s] the step is fixed. Without it each step keeps its local error below `local_tolerance` times
-    (`scale` + |state|), with a `scale` of shape (nq + nv,), 1 by default, and lasts no longer than `longest_step` [s].
+    With a `timestep` [s] the step is fixed. Without it each step keeps its local error below
+    `local_tolerance` times (`scale` + |state|), with a `scale` of shape (nq + nv,), 1 by default,
+    and lasts no longer than `longest_step` [s].
 
-    A damping with the square of a rate, v |v|, has a corner where that rate passes zero. Steps of variable length end
-    there, as the method's order holds on either side only.
+    A damping with the square of a rate, v |v|, has a corner where that rate passes zero. Steps of
+    variable length end there, as the method's order holds on either side only.
     """
 
     def __init__(
@@ -137,11 +143,16 @@ class DOP853:
         """Longest step of the last run [s]."""
 
     @quiet()
-    def run(self, start: np.ndarray, times: np.ndarray, observer: Observer | None = None) -> np.ndarray:
-        """Return the states at increasing `times` [s], shape (samples, nq + nv), of the motion from `start` at time 0.
+    def run(
+        self, start: np.ndarray, times: np.ndarray, observer: Observer | None = None
+    ) -> np.ndarray:
+        """Return the states at increasing `times` [s], shape (samples, nq + nv).
+
+        The motion begins at time 0 with the state `start`.
 
         Raises:
-          DivergenceError: if the motion stops being finite, no step is small enough, or there are too many evaluations.
+          DivergenceError: if the motion stops being finite, no step is small enough, or there are
+            too many evaluations.
         """
         size = len(start)
         samples = Steps(times, np.empty((len(times), size)))
@@ -193,9 +204,10 @@ class DOP853:
 def _advance(dynamics, tableau, control, work, samples, ends, place):
     """Take up to a block of steps, and return the `Block`.
 
-    `dynamics` is a `ForwardDynamics`. The `tableau` is an argument, as a compiler takes seconds to unroll all loops
-    over numbers that it knows. `work` comes with the state and the derivative at the start of the first step. The rows
-    of `samples` whose times are passed are filled in, and the ends of steps are written to `ends`, if that has room.
+    `dynamics` is a `ForwardDynamics`. The `tableau` is an argument, as a compiler takes seconds to
+    unroll all loops over numbers that it knows. `work` comes with the state and the derivative at
+    the start of the first step. The rows of `samples` whose times are passed are filled in, and the
+    ends of steps are written to `ends`, if that has room.
     """
     optimize_for_size()
     state = work.state
@@ -214,32 +226,39 @@ def _advance(dynamics, tableau, control, work, samples, ends, place):
         if sample == samples.times.size:
             status = DONE
             break
+
+        # Take a step.
         for stage in range(1, _END + 1):
             _evaluate(dynamics, tableau, work, step, stage, end)
         evaluations += _END
         _end_step(tableau, work, step)
         finite = _is_finite(end)
-        error = 0.0
         if control.fixed and not finite:
             status = NOT_FINITE
             break
+
+        # If its length is variable, take it again where its error is too large, or to a corner.
+        error = 0.0
+        has_output = False
         if not control.fixed:
             error = _error(tableau, control, work, step) if finite else np.inf
-            if not error < 1.0:  # take it again
+            if not error < 1.0:
                 step *= max(_SHRINK, _CAUTION * error ** (-1 / 8)) if finite else _SHRINK
                 if not step > max(_SHORTEST * time, _SHORTEST_AT_START):  # it may also be NaN
                     status = STEP_TOO_SMALL if finite else NOT_FINITE
                     break
                 continue
-        has_output = not control.fixed and _passes_corner(control.corners, state, end)
-        if has_output:
-            evaluations += _prepare_output(dynamics, tableau, work, step)
-            part = _first_corner(control.corners, work)
-            if part < 1.0:  # take it again, to the corner
-                step *= part
-                continue
+            if _passes_corner(control.corners, state, end):
+                evaluations += _prepare_output(dynamics, tableau, work, step)
+                has_output = True
+                to_corner = _first_corner(control.corners, work)
+                if to_corner < 1.0:
+                    step *= to_corner
+                    continue
+
+        # It stands. Read off the samples in it.
         steps += 1
-        added = step - time_carry
+        added = step - time_carry  # as in `_end_step`
         end_time = steps * step if control.fixed else time + added
         passed = end_time * (1 + ON_TIME)
         while sample < samples.times.size and samples.times[sample] <= passed:
@@ -252,6 +271,8 @@ def _advance(dynamics, tableau, control, work, samples, ends, place):
                     has_output = True
                 _interpolate(work, part, samples.states[sample])
             sample += 1
+
+        # Go on from its end.
         time_carry = (end_time - time) - added
         time = end_time
         write(end, state)
@@ -286,7 +307,7 @@ def _evaluate(dynamics, tableau, work, step, stage, out):
 
 @inlined
 def _end_step(tableau, work, step):
-    """Write the state at the end of the step, less the rounding error that sums carry (Kahan's sum)."""
+    """Write the state at the end of the step, less what rounding has added (Kahan's sum)."""
     for i in range(work.end.size):
         rate = 0.0
         for stage in range(_END):
@@ -327,9 +348,10 @@ def _error(tableau, control, work, step):
 
 @inlined
 def _next_step(control, step, error, error_before, remaining):
-    """Return the length of the step after one with this `error` [s], up to the end of the run in `remaining` [s]."""
+    """Return the next step [s] after one with this `error`; `remaining` is left of the run [s]."""
     # exponents as in DOPRI5, for order 8
-    growth = _CAUTION * max(error, _LEAST_NEW_ERROR) ** (0.75 * _MEMORY - 1 / 8) * error_before**_MEMORY
+    power = 0.75 * _MEMORY - 1 / 8
+    growth = _CAUTION * max(error, _LEAST_NEW_ERROR) ** power * error_before**_MEMORY
     following = min(control.longest, step * min(_GROW, max(_SHRINK, growth)))
     if remaining > 0:  # a motion at rest would take steps without bound
         following = min(following, remaining)
@@ -338,7 +360,7 @@ def _next_step(control, step, error, error_before, remaining):
 
 @inlined
 def _write_end(samples, ends, row, time, state):
-    """Write the end of a step to a row of `ends`; that of a step beyond the last sample is the last sample."""
+    """Write the end of a step to a row of `ends`: at the latest, the last sample."""
     last = samples.times.size - 1
     if time > samples.times[last]:
         ends.times[row] = samples.times[last]
@@ -350,7 +372,7 @@ def _write_end(samples, ends, row, time, state):
 
 @compiled
 def _prepare_output(dynamics, tableau, work, step):
-    """Write the coefficients of the continuous output over the step, and return the number of evaluations."""
+    """Write the coefficients of the continuous output; return the number of evaluations."""
     optimize_for_size()
     output = work.output
     stages = work.stages
@@ -382,7 +404,7 @@ def _interpolate(work, part, out):
 
 @compiled
 def _passes_corner(corners, state, end):
-    """Return whether one of the `corners`' rates, unless it is rounding, changes its sign in a step."""
+    """Return whether one of the `corners`' rates, if it is no rounding, changes its sign."""
     optimize_for_size()
     for row in range(len(corners)):
         first = 0.0
@@ -399,7 +421,10 @@ def _passes_corner(corners, state, end):
 
 @compiled
 def _first_corner(corners, work):
-    """Return the part of the step after which the first of the rates changes its sign; 1 if only at one of its ends."""
+    """Return the part of the step after which the first of the rates changes its sign.
+
+    It is 1 if they do so at an end of the step only.
+    """
     optimize_for_size()
     first = 1.0
     for row in range(len(corners)):

@@ -1,4 +1,9 @@
-"""MuJoCo's accelerations in compiled code, and the loop that calls a method's kernel until a run is done."""
+"""MuJoCo's accelerations in compiled code, and the loop that calls a method's kernel.
+
+A kernel is a method's compiled function that takes a block of steps: `advance(..., ends, place)`
+begins at a `place`, writes up to as many `ends` of steps as there is room for, and returns a
+`Block`, which says where the next one begins.
+"""
 
 import math
 from contextlib import nullcontext
@@ -24,7 +29,8 @@ NOT_FINITE = 3
 STEP_TOO_LONG = 4
 """The method does not converge at this timestep."""
 ON_TIME = 1e-14
-"""Share of the time that has passed by which a sample may lie after the end of a step: both have been rounded."""
+"""Share of the time that has passed by which a sample may lie after the end of a step: both have
+been rounded."""
 _CONSTRAINT = int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
 _DAMPER = int(mujoco.mjtDisableBit.mjDSBL_DAMPER)
 _ACTUATION = int(mujoco.mjtDisableBit.mjDSBL_ACTUATION)
@@ -35,8 +41,8 @@ _SMOOTH_STAGES = (
     "mj_fwdVelocity",
     "mj_fwdAcceleration",
 )
-"""The stages of mj_forward that a model without constraints and with constant actuator forces needs: the same numbers
-to the last bit, in three quarters of the time."""
+"""The stages of mj_forward that a model without constraints and with constant actuator forces
+needs: the same numbers to the last bit, in three quarters of the time."""
 
 
 class ForwardDynamics(NamedTuple):
@@ -105,8 +111,9 @@ class Dynamics:
     def _used_positions(self) -> np.ndarray:
         """Return 1.0 for each position on which the accelerations depend, else 0.0, shape (nq,).
 
-        Those of a smooth model do not depend on the slide, and are evaluated with the slide at its origin: far from
-        there the rounding of positions in the world, from which MuJoCo computes torques, would hide a short arm.
+        Those of a smooth model do not depend on the slide, and are evaluated with the slide at its
+        origin: far from there the rounding of positions in the world, from which MuJoCo computes
+        torques, would hide a short arm.
         """
         used = np.ones(self.model.nq)
         if self._smooth:
@@ -116,17 +123,17 @@ class Dynamics:
         return used
 
     def model_has_changed(self) -> None:
-        """Take notice of new numbers in the model. For a smooth one this computes its constant actuator forces."""
+        """Take notice of new numbers in the model: constant actuator forces change with them."""
         vars(self).pop("corners", None)
         if self._smooth and self._actuated:
             mujoco.mj_forward(self.model, self.data)
 
     @cached_property
     def corners(self) -> np.ndarray:
-        """Return the rates whose squares damp the model, as weights of a state's components, shape (rates, nq + nv).
+        """Return the rates whose squares damp the model, as weights of a state's components.
 
-        They are the rates of joints, and of tendons that are sums of joints. Where one changes its sign the drag
-        v |v| has a corner.
+        The shape is (rates, nq + nv). They are the rates of joints, and of tendons that are sums of
+        joints. Where one changes its sign the drag v |v| has a corner.
         """
         model = self.model
         rates = []
@@ -162,21 +169,22 @@ class Dynamics:
         ends: Steps,
         observer: Observer | None,
     ) -> Any:
-        """Call a method's kernel, a block of steps each, until its run is done; return its last place.
+        """Call a method's kernel until its run is done, and return the last place.
 
-        The kernel takes the `arguments`, the `ends` of steps to write for the observer, and the place where the block
-        begins. It returns a `Block`. Between two blocks the user can interrupt a run.
+        The kernel takes the `arguments`, the `ends` of steps to write for the observer, and a
+        place. Between two blocks the user can interrupt a run.
 
         Raises:
-          DivergenceError: if the motion stops being finite, its timestep is too long, no step is small enough, or
-            there are too many evaluations.
+          DivergenceError: if the motion stops being finite, its timestep is too long, no step is
+            small enough, or there are too many evaluations.
         """
         status = MORE
         time = 0.0
         while status == MORE:
             if self.evaluations > self.most_evaluations:
                 raise DivergenceError(
-                    f"the {name} run was given up at t = {time:.6g} s after {self.evaluations} evaluations"
+                    f"the {name} run was given up at t = {time:.6g} s "
+                    f"after {self.evaluations} evaluations"
                 )
             with nullcontext() if kernel.overloads else announced():
                 block = kernel(*arguments, ends, place)
@@ -187,11 +195,17 @@ class Dynamics:
             if observer and block.rows:
                 observer(ends.times[: block.rows], ends.states[: block.rows])
         if status == NOT_FINITE:
-            raise DivergenceError(f"the {name} run diverged at t = {time:.6g} s: its state is no longer finite")
+            raise DivergenceError(
+                f"the {name} run diverged at t = {time:.6g} s: its state is no longer finite"
+            )
         if status == STEP_TOO_SMALL:
-            raise DivergenceError(f"the {name} run diverged at t = {time:.6g} s: no step is small enough for it")
+            raise DivergenceError(
+                f"the {name} run diverged at t = {time:.6g} s: no step is small enough for it"
+            )
         if status == STEP_TOO_LONG:
-            raise DivergenceError(f"the {name} run failed at t = {time:.6g} s: take a shorter timestep")
+            raise DivergenceError(
+                f"the {name} run failed at t = {time:.6g} s: take a shorter timestep"
+            )
         return place
 
 
@@ -224,6 +238,6 @@ def write_derivative(dynamics, state, out):
 
 @inlined
 def write(values, out):
-    """Write values to `out`, of the same size: an assignment would compile the text of an error for seconds."""
+    """Write values to `out`, of the same size; `out[:] = values` takes seconds to compile."""
     for i in range(values.size):
         out[i] = values[i]

@@ -12,7 +12,8 @@ from mjbeer.integrators import Observer
 from mjbeer.model.mujoco_library import MAX_STATE, quiet
 
 _BLOCK = 4096
-"""Steps between two returns to Python, where a run can be interrupted: their states fit into a processor's cache."""
+"""Steps between two returns to Python, where a run can be interrupted: their states fit into a
+processor's cache."""
 _STATE = mujoco.mjtState.mjSTATE_FULLPHYSICS
 """MuJoCo's state of a run: the time first, then positions and rates."""
 
@@ -20,21 +21,29 @@ _STATE = mujoco.mjtState.mjSTATE_FULLPHYSICS
 class MuJoCoSteps:
     """The integrator that a model names, with fixed timesteps.
 
-    A step is one timestep, or several unequal `timesteps` [s] one after the other. There are samples at the ends of
-    steps only: `run` returns the states at those that are nearest to the times asked for.
+    A step is one timestep, or several unequal `timesteps` [s] one after the other. There are
+    samples at the ends of steps only: `run` returns the states at those that are nearest to the
+    times asked for.
     """
 
-    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, timesteps: Sequence[float], name: str) -> None:
+    def __init__(
+        self, model: mujoco.MjModel, data: mujoco.MjData, timesteps: Sequence[float], name: str
+    ) -> None:
         self.name = name
         self._data = data
         self._models = [_with_timestep(model, timestep) for timestep in timesteps]
         self._step = sum(timesteps)
 
-    def run(self, start: np.ndarray, times: np.ndarray, observer: Observer | None = None) -> np.ndarray:
-        """Return the states after the steps that end nearest to `times` [s], shape (samples, nq + nv).
+    def run(
+        self, start: np.ndarray, times: np.ndarray, observer: Observer | None = None
+    ) -> np.ndarray:
+        """Return the states after the steps that end nearest to `times` [s].
+
+        The shape is (samples, nq + nv).
 
         Raises:
-          DivergenceError: if the motion stops being finite; the message has the time and MuJoCo's reason.
+          DivergenceError: if the motion stops being finite; the message has the time and MuJoCo's
+            reason.
         """
         wanted = np.rint(times / self._step).astype(np.int64)  # steps after which there is a sample
         samples = np.empty((len(times), len(start)))
@@ -83,7 +92,7 @@ class MuJoCoSteps:
             state[data.qpos.size :] = data.qvel
 
     def _check(self, states: np.ndarray, done: int) -> None:
-        """Raise a `DivergenceError` if a block of states, `done` steps after the start, is not finite."""
+        """Raise a `DivergenceError` if the states of a block after `done` steps are not finite."""
         data = self._data
         causes = [mujoco.mju_warningText(kind, 0) for kind in np.flatnonzero(data.warning.number)]
         largest = max(np.abs(states).max(), np.abs(data.qacc).max())
@@ -105,7 +114,7 @@ def _with_timestep(model: mujoco.MjModel, timestep: float) -> mujoco.MjModel:
 
 
 def _roll_out(model: mujoco.MjModel, data: mujoco.MjData, block: np.ndarray) -> None:
-    """Take a step for each row of `block` in compiled code, and write MuJoCo's state after it there."""
+    """Take a step for each row of `block` in compiled code, and write MuJoCo's state there."""
     state = np.empty((1, block.shape[1]))
     mujoco.mj_getState(model, data, state[0], _STATE)
     rollout(

@@ -1,1 +1,1 @@
-"""Files, tables, plots and the terminal. Nothing here depends on the physics, and no other folder is imported."""
+"""Files, folders, jobs, tables, plots and the terminal: nothing that depends on the physics."""

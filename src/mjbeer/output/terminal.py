@@ -1,4 +1,7 @@
-"""Printing to standard output and standard error, with errors raised if that fails: texts, tables, a progress bar."""
+"""Texts, tables and a progress bar on standard output and standard error.
+
+What cannot be printed is an error.
+"""
 
 import os
 import sys
@@ -24,12 +27,13 @@ class Table:
     columns: tuple[str, ...]
     rows: Sequence[tuple[str, ...]]
     left: tuple[int, ...] = (0,)
-    """Indices of the columns that are aligned to the left; the others, of numbers, are aligned to the right."""
+    """Indices of the columns that are aligned to the left, as those of numbers are not."""
 
     def __rich__(self) -> rich.table.Table:
         table = rich.table.Table(title=self.title)
         for index, name in enumerate(self.columns):
-            table.add_column(name, justify="left" if index in self.left else "right", overflow="fold")
+            side = "left" if index in self.left else "right"
+            table.add_column(name, justify=side, overflow="fold")
         for row in self.rows:
             table.add_row(*row)
         return table
@@ -37,9 +41,9 @@ class Table:
     def markdown(self) -> str:
         """Return the table as Markdown, with the title in bold above it if there is one."""
         heading = f"**{self.title}**\n\n" if self.title else ""
-        rule = "|".join("---" if index in self.left else "---:" for index in range(len(self.columns)))
+        sides = ["---" if index in self.left else "---:" for index in range(len(self.columns))]
         head, *rows = [f"| {' | '.join(row)} |\n" for row in (self.columns, *self.rows)]
-        return "".join([heading, head, f"|{rule}|\n", *rows])
+        return "".join([heading, head, f"|{'|'.join(sides)}|\n", *rows])
 
     def tabbed(self) -> str:
         """Return the headings and the rows as lines with tabs between the columns."""
@@ -49,7 +53,8 @@ class Table:
 def show(*tables: Table) -> None:
     """Print tables to standard output, with the errors of `printing`.
 
-    Where a program reads it, they are lines with tabs between the columns, below their titles, which follow a #.
+    Where a program reads it, they are lines with tabs between the columns, below their titles,
+    which follow a #.
     """
     if sys.stdout.isatty():
         with printing():
@@ -59,7 +64,7 @@ def show(*tables: Table) -> None:
 
 
 def say(text: str, style: str = "") -> None:
-    """Print a line to standard error. Brackets are printed as they are: names of files may contain them."""
+    """Print a line to standard error, with brackets as they are: names of files may have them."""
     STDERR.print(text, style=style, highlight=False, markup=False, soft_wrap=True)
 
 
@@ -75,7 +80,7 @@ def status(text: str) -> Generator[None]:
 
 @contextmanager
 def progress_bar(console: Console | None, total: int) -> Generator[Callable[[str], None]]:
-    """Yield a function to be called at the start of each of `total` pieces of work, with the name of the piece.
+    """Yield a function to be called once for each of `total` pieces of work, with its name.
 
     No bar is shown if `console` is None or not a terminal.
     """
@@ -90,7 +95,8 @@ def printing() -> Generator[None]:
     """Flush standard output at the end of the block, so that an error in writing is raised here.
 
     Raises:
-      OutputError: if standard output cannot be written to: it is closed, a pipe that nobody reads, or a full disk.
+      OutputError: if standard output cannot be written to: it is closed, a pipe that nobody reads,
+        or a full disk.
     """
     if sys.stdout is None:  # as after `>&-`: the next file that is opened would take its place
         raise OutputError("cannot write to standard output: it is closed")
@@ -100,7 +106,8 @@ def printing() -> Generator[None]:
         finally:  # also at SystemExit: --help prints and then ends the program
             sys.stdout.flush()
     except OSError as error:
-        # Python flushes the buffer once more when it ends; without this, that would fail with a traceback.
+        # Python flushes the buffer once more when it ends; without this, that would fail with a
+        # traceback.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         raise OutputError(f"cannot write to standard output: {error.strerror or error}") from error
 

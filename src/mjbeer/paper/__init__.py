@@ -1,4 +1,8 @@
-"""K. T. McDonald's paper: equations and statements as claims that are measured, its scenarios as plots and films."""
+"""K.
+
+T. McDonald's paper: equations and statements as claims that are measured, its scenarios as plots
+and films.
+"""
 
 from typing import TYPE_CHECKING
 
@@ -7,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def claims() -> "list[Claim]":
-    """Return all claims in the order of the paper's sections; nothing is simulated before they measure."""
+    """Return all claims in the order of the paper's sections; nothing is simulated yet."""
     from mjbeer.paper import frozen, hopping, massive_can, oscillation, segment, sliding
 
     can = *sliding.CLAIMS, *oscillation.CLAIMS, *segment.CLAIMS, *massive_can.CLAIMS

@@ -1,7 +1,9 @@
-"""Appendix A.4 of the paper: a hoop of mass M with a point mass m on its rim, which falls from the top and may hop.
+"""Appendix A.4 of the paper: a hoop with a point mass on its rim, which may hop.
 
-The paper has no equations for it. The ones here hold while the hoop rolls without slipping on level ground. `ratio` is
-M/m, and phi [rad] is 0 where the point mass is at the bottom.
+The hoop has the mass M and the point mass m, which falls from the top.
+
+The paper has no equations for it. The ones here hold while the hoop rolls without slipping on level
+ground. `ratio` is M/m, and phi [rad] is 0 where the point mass is at the bottom.
 """
 
 import math
@@ -22,7 +24,8 @@ from mjbeer.theory.scene import Scene, hoop
 RATIO = 1 / 20  # M/m of the hoop that hops
 MU = 0.8  # friction coefficient of the hoop that skids: the kinetic one in the paper's last figure
 TOP = math.pi - 0.05
-"""Angle phi [rad] from which a hoop falls: a little beside pi, the top, where it would stay in balance."""
+"""Angle phi [rad] from which a hoop falls: a little beside pi, the top, where it would stay in
+balance."""
 
 
 def rate(ratio: float, phi: float | np.ndarray) -> Any:
@@ -54,7 +57,9 @@ def friction(ratio: float, phi: float | np.ndarray) -> Any:
 
 def _least_normal(ratio: float) -> tuple[float, float]:
     """Return the least N/(m g) during the fall, and the phi [rad] of it."""
-    least = minimize_scalar(lambda phi: normal(ratio, phi), bounds=(0.3, 3.1), options={"xatol": 1e-9})
+    least = minimize_scalar(
+        lambda phi: normal(ratio, phi), bounds=(0.3, 3.1), options={"xatol": 1e-9}
+    )
     return float(least.fun), float(least.x)
 
 
@@ -89,12 +94,15 @@ def _hoop(ratio: float) -> Scene:
 
 
 def fall(ratio: float, friction: float, timestep: float) -> Run:
-    """Return half a second of a hoop in contact that is let go at `TOP`: one that lifts off has done so by then."""
+    """Return half a second of a hoop in contact that is let go at `TOP`.
+
+    A hoop that lifts off has done so by then.
+    """
     return simulate(_hoop(ratio), 0.5, TOP, rolling="contact", timestep=timestep, friction=friction)
 
 
 def takeoff(run: Run) -> float | None:
-    """Return the angle of the load from the top [rad] when the hoop leaves the incline; None if it stays.
+    """Return the load's angle from the top [rad] when the hoop lifts off; None if it stays.
 
     A lift of up to 1e-9 radii counts as touching: a soft contact sinks in by more than that.
     """
@@ -107,7 +115,10 @@ def _lifts_off() -> SimpleNamespace:
 
 
 def _skids() -> SimpleNamespace:
-    """Return the angle from the top [rad] at which the rim slides faster than 1e-5 of the axis's top speed."""
+    """Return the angle from the top [rad] at which the rim slides.
+
+    It then slides faster than 1e-5 of the largest speed of the axis.
+    """
     run = fall(RATIO, MU, 2e-5)
     rim = np.abs(run.u_dot - run.scene.can.radius * run.roll_dot)
     angle = math.pi - float(run.phi[np.argmax(rim > 1e-5 * np.abs(run.u_dot).max())])
@@ -126,29 +137,61 @@ def _friction_at_lift_off(ratio: float) -> float:
 
 _THEORY = "exact theory"
 
-# fmt: off
 CLAIMS = (
-    Claim("sec. A.4", "Littlewood: lifts off at 90 degrees: beyond, at M/m = 1/20; within, at 1e-9",
-        Witness(_THEORY, partial(lift_off, 1e-9)), Bound(1e-8, "M/m"), "pi/2 - seen",
+    Claim(
+        "sec. A.4",
+        "Littlewood: lifts off at 90 degrees: beyond, at M/m = 1/20; within, at 1e-9",
+        Witness(_THEORY, partial(lift_off, 1e-9)),
+        Bound(1e-8, "M/m"),
+        residual="pi/2 - observed",
         limit=Limit(0.091, partial(lift_off, RATIO)),
-        quote="The hoop lifts off the ground when the radius vector to the weight becomes horizontal."),
-    Claim("sec. A.4", "angle of lift-off at M/m = 1/20, by theory 99.0 degrees",
-        Witness(CONTACT, _lifts_off), Bound(5e-3, "penetration of the contact, which unloads late"), "angle - theory",
-        quote="the can leaves the surface briefly"),
-    Claim("sec. A.4", "Pritchett: hops from rest below M/m = 1/13",
-        Witness(_THEORY, _threshold), Bound(1e-9, "the search for the least N"), "1/13 - seen",
-        quote="valid only if the mass of the unloaded hoop is nonzero"),
-    Claim("sec. A.4", "in practice it skids first: at mu = 0.8 from 94.2 degrees on, by theory",
-        Witness(CONTACT, _skids), Bound(5e-3, "what counts as skidding, and the push that starts it"), "angle - theory",
-        quote="In actual practice the hoop skids first."),
-    Claim("sec. A.4", "rolling without slipping cannot hop: beyond, held by friction alone; within, by a constraint",
-        Witness(CONTACT, partial(_height, "equality")), Bound(0.0, "it hops or not"), "seen - 1",
+        quote="The hoop lifts off the ground when the radius vector to the weight becomes "
+        "horizontal.",
+    ),
+    Claim(
+        "sec. A.4",
+        "angle of lift-off at M/m = 1/20, by theory 99.0 degrees",
+        Witness(CONTACT, _lifts_off),
+        Bound(5e-3, "penetration of the contact, which unloads late"),
+        residual="angle - theory",
+        quote="the can leaves the surface briefly",
+    ),
+    Claim(
+        "sec. A.4",
+        "Pritchett: hops from rest below M/m = 1/13",
+        Witness(_THEORY, _threshold),
+        Bound(1e-9, "the search for the least N"),
+        residual="1/13 - observed",
+        quote="valid only if the mass of the unloaded hoop is nonzero",
+    ),
+    Claim(
+        "sec. A.4",
+        "in practice it skids first: at mu = 0.8 from 94.2 degrees on, by theory",
+        Witness(CONTACT, _skids),
+        Bound(5e-3, "what counts as skidding, and the push that starts it"),
+        residual="angle - theory",
+        quote="In actual practice the hoop skids first.",
+    ),
+    Claim(
+        "sec. A.4",
+        "rolling without slipping cannot hop: beyond, held by friction alone; within, by a "
+        "constraint",
+        Witness(CONTACT, partial(_height, "equality")),
+        Bound(0.0, "it hops or not"),
+        residual="observed - 1",
         limit=Limit(0.58, partial(_height, "contact")),
-        quote="A rigid can that is somehow constrained to roll without slipping cannot hop."),
-    Claim("footnote 10", "nothing pushes at 90 degrees: beyond, the friction at lift-off for M/m = 1/20; within, 1e-9",
-        Witness(_THEORY, partial(_friction_at_lift_off, 1e-9)), Bound(1e-8, "M/m"),
-        "1 + seen - 1",  # the error is a share of m g
+        quote="A rigid can that is somehow constrained to roll without slipping cannot hop.",
+    ),
+    Claim(
+        "footnote 10",
+        "nothing pushes at 90 degrees: beyond, the friction at lift-off for M/m = 1/20; within, "
+        "1e-9",
+        Witness(_THEORY, partial(_friction_at_lift_off, 1e-9)),
+        Bound(1e-8, "M/m"),
+        residual="observed",
+        scale="1",  # friction is in weights
         limit=Limit(0.146, partial(_friction_at_lift_off, RATIO)),
-        quote="valid only if the mass of the unloaded hoop is nonzero, in contrast to Littlewood's idealization"),
+        quote="valid only if the mass of the unloaded hoop is nonzero, in contrast to Littlewood's "
+        "idealization",
+    ),
 )
-# fmt: on

@@ -1,37 +1,56 @@
-"""The paper's stories: its scenarios as data, each with a plot, a caption and perhaps a film of what moves."""
+"""The paper's stories: its scenarios as data, each with a plot, a caption and perhaps a film."""
 
 import pathlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from matplotlib.axes import Axes
 from rich.console import Console
 
-from mjbeer.drawing import opengl, video
-from mjbeer.drawing.film import Film, MotionFilm, Race, Runner
-from mjbeer.drawing.overlay import Look
+from mjbeer.drawing import opengl
+from mjbeer.drawing.film import Film, MotionFilm
+from mjbeer.drawing.race import Race, Runner
+from mjbeer.drawing.style import FilmStyle
 from mjbeer.drawing.video import FilmJob, PlotJob
 from mjbeer.drawing.words import in_degrees, in_words
-from mjbeer.output import files
+from mjbeer.output import files, jobs
+from mjbeer.output.jobs import Job
 from mjbeer.output.plots import chart
 from mjbeer.paper import story_plots
 from mjbeer.paper.story_plots import SWING
 from mjbeer.theory.scene import frozen, sliding
 
-SIZE = 768, 432, 25
-"""Width and height [pixels] and pictures per second of a film: a page shows it 768 pixels wide, or less."""
+SIZE = (768, 432, 25)
+"""Width and height [pixels] and pictures per second of a film: a page shows it 768 pixels wide,
+or less."""
+
+
+class PlotSize(NamedTuple):
+    """The panels of a plot, and how large it is."""
+
+    rows: int
+    columns: int
+    width: float
+    """[inches]."""
+    height: float
+    """[inches]."""
 
 
 @dataclass(frozen=True)
 class Story:
     """A scenario of the paper."""
 
-    name: str  # name of its files, without an ending
+    name: str
+    """Name of its files, without an ending."""
     title: str
-    subtitle: str  # of which scene the plot is
-    caption: str  # what the plot and the film show
-    size: tuple[int, int, float, float]  # rows and columns of the plot's panels, and its width and height [inches]
-    draw: Callable[[Sequence[Axes]], None]  # draws into the panels
+    subtitle: str
+    """Of which scene the plot is."""
+    caption: str
+    """What the plot and the film show."""
+    size: PlotSize
+    draw: Callable[[Sequence[Axes]], None]
+    """Draws into the panels."""
     film: Film | None = None
 
     def plot(self, path: pathlib.Path) -> None:
@@ -46,7 +65,8 @@ class Story:
 
 def _let_go() -> Sequence[Runner]:
     """Return two cans: in one the beer does not swing, in the other it does."""
-    still, swinging = (story_plots.let_go(degrees, 0.65) for degrees in (0.0, 60.0))
+    still = story_plots.let_go(0.0, 0.65)
+    swinging = story_plots.let_go(60.0, 0.65)
     return [
         Runner("let go at φ = 60°", swinging, (0.75, 0.2, 0.1), note="swings"),
         Runner("let go at φ = 0°", still, (0.1, 0.35, 0.6), note="does not swing"),
@@ -58,10 +78,10 @@ STORIES = (
         "trivial",
         "However the beer swings, its centre of mass accelerates down the incline evenly",
         in_words(sliding()),
-        "Beer that starts with its surface parallel to the incline keeps it so, and the can rolls down with "
-        "exactly g sin α. Beer that is let go at 60° swings, and its can hesitates. The centre of mass of the "
-        "beer moves down in the same way in both.",
-        (2, 1, 6, 6.2),
+        "Beer that starts with its surface parallel to the incline keeps it so, and the can rolls "
+        "down with exactly g sin α. Beer that is let go at 60° swings, and its can hesitates. The "
+        "centre of mass of the beer moves down in the same way in both.",
+        PlotSize(2, 1, 6, 6.2),
         story_plots.draw_trivial,
         Race(
             "One beer swings, one does not: their centres of mass stay abreast",
@@ -77,16 +97,20 @@ STORIES = (
         "hesitation",
         "The can hesitates once in every swing of its beer",
         f"{in_words(sliding())}; beer let go at φ₀ = {in_degrees(SWING)}",
-        "The can hesitates once in every swing of the beer. Its distance less ½ g sin α t² is b sin φ, and "
-        "swings with the beer. Eq. (25) as printed has b cos φ instead, which is a smaller ripple at twice "
-        "the frequency. It is drawn without its constant, and from the same start.",
-        (1, 1, 6, 4.4),
+        "The can hesitates once in every swing of the beer. Its distance less ½ g sin α t² is b "
+        "sin φ, and swings with the beer. Eq. (25) as printed has b cos φ instead, which is a "
+        "smaller ripple at twice the frequency. It is drawn without its constant, and from the "
+        "same start.",
+        PlotSize(1, 1, 6, 4.4),
         story_plots.draw_hesitation,
         MotionFilm(
             story_plots.HESITATION,
             speed=0.1,
-            look=Look(
-                "A can hesitates in every swing of its beer", ("u_dot", "ahead"), ("phi", "ghost"), notes=("hesitates",)
+            style=FilmStyle(
+                "A can hesitates in every swing of its beer",
+                ("u_dot", "ahead"),
+                ("phi", "ghost"),
+                notes=("hesitates",),
             ),
         ),
     ),
@@ -94,17 +118,18 @@ STORIES = (
         "looping",
         "Beer that loops in its can does not turn evenly",
         in_words(sliding()),
-        "The beer loops in its can. The plots show how far it is ahead of an even rotation, over one turn. By "
-        "eqs. (26) and (28) it is ahead in one half of the turn and behind in the other. In truth there is a "
-        "second ripple, twice in a turn, which remains however fast the beer spins. Fast beer lifts its can "
-        "off the incline: a free can stays on it up to 47 rad/s at the bottom. The corrected formula is of "
-        "first order, and only near the truth when the beer is slow.",
-        (2, 1, 6, 6.2),
+        "The beer loops in its can. The plots show how far it is ahead of an even rotation, over "
+        "one turn. By eqs. (26) and (28) it is ahead in one half of the turn and behind in the "
+        "other. In truth there is a second ripple, twice in a turn, which remains however fast the "
+        "beer spins. Fast beer lifts its can off the incline: a free can stays on it up to 47 "
+        "rad/s at the bottom. The corrected formula is of first order, and only near the truth "
+        "when the beer is slow.",
+        PlotSize(2, 1, 6, 6.2),
         story_plots.draw_looping,
         MotionFilm(
             story_plots.LOOPING,
             speed=0.1,
-            look=Look(
+            style=FilmStyle(
                 "Beer that loops in its can all but lifts it",
                 ("normal", "phi"),
                 ("phi", "normal"),
@@ -116,40 +141,43 @@ STORIES = (
         "rocking",
         "A can of frozen beer rocks about its equilibrium and stays",
         f"{in_words(frozen())}; let go at φ = 0",
-        "A can with frozen beer is let go at φ = 0. It rocks about its equilibrium and does not roll off. "
-        "Footnote 8's equation as printed has ½ a b in place of a b, and gives another swing.",
-        (2, 1, 6, 6.2),
+        "A can with frozen beer is let go at φ = 0. It rocks about its equilibrium and does not "
+        "roll off. Footnote 8's equation as printed has ½ a b in place of a b, and gives another "
+        "swing.",
+        PlotSize(2, 1, 6, 6.2),
         story_plots.draw_rocking,
         MotionFilm(
             story_plots.ROCKING,
             speed=0.5,
-            look=Look("Frozen beer, let go below: it rocks and stays", ("phi", "u"), ("phi", "paths")),
+            style=FilmStyle(
+                "Frozen beer, let go below: it rocks and stays", ("phi", "u"), ("phi", "paths")
+            ),
         ),
     ),
     Story(
         "roll-down",
         "Frozen beer let go on top rolls down in jerks",
         f"{in_words(frozen())}; let go at φ = 180°",
-        "The figure of A.3: the same can, let go with the beer on top. It rolls down in jerks, a little "
-        "faster than a solid cylinder. From 0.834 s on the incline would have to pull the can for it to keep "
-        "rolling. What comes after that is dotted.",
-        (2, 1, 6, 6.2),
+        "The figure of A.3: the same can, let go with the beer on top. It rolls down in jerks, a "
+        "little faster than a solid cylinder. From 0.834 s on the incline would have to pull the "
+        "can for it to keep rolling. What comes after that is dotted.",
+        PlotSize(2, 1, 6, 6.2),
         story_plots.draw_roll_down,
     ),
     Story(
         "slip-and-hop",
         "On an incline with μ = 1, the can slips before it hops",
         f"{in_words(frozen())}; let go at φ = 180°",
-        "The same can on an incline with μ = 1. Rolling needs more and more friction. At 0.72 s it needs more "
-        "than there is, and the can slips by less than a millimetre. At 0.83 s the can begins to slip far, "
-        "and then it hops, 7 mm high.",
-        (2, 1, 6, 6.2),
+        "The same can on an incline with μ = 1. Rolling needs more and more friction. At 0.72 s it "
+        "needs more than there is, and the can slips by less than a millimetre. At 0.83 s the can "
+        "begins to slip far, and then it hops, 7 mm high.",
+        PlotSize(2, 1, 6, 6.2),
         story_plots.draw_slip_and_hop,
         MotionFilm(
             story_plots.PARTING,
             speed=0.04,
             still=0.9,
-            look=Look(
+            style=FilmStyle(
                 "With μ = 1, frozen beer slips before it hops",
                 ("lift", "slip"),
                 ("paths",),
@@ -162,10 +190,11 @@ STORIES = (
         "lift-off",
         "Before a hoop lifts off, it skids",
         "hoop of mass M with a weight m on its rim, level ground; rolling from rest",
-        "The angles at which a hoop that starts from rest lifts off and at which it skids, over its mass. "
-        "Littlewood's 90° are right for a massless hoop. With any finite friction the hoop skids first. A "
-        "hoop just too heavy to skid at 80° grips until after 90°: this is why one line has a gap.",
-        (1, 1, 6, 5),
+        "The angles at which a hoop that starts from rest lifts off and at which it skids, over "
+        "its mass. Littlewood's 90° are right for a massless hoop. With any finite friction the "
+        "hoop skids first. A hoop just too heavy to skid at 80° grips until after 90°: this is why "
+        "one line has a gap.",
+        PlotSize(1, 1, 6, 5),
         story_plots.draw_lift_off,
     ),
 )
@@ -179,27 +208,38 @@ def letters() -> str:
 
 def films(folder: pathlib.Path) -> list[FilmJob]:
     """Return the films of the stories, to be drawn into a folder."""
-    return [FilmJob(story.film, folder / f"{story.name}.mp4", *SIZE) for story in STORIES if story.film is not None]
+    return [
+        FilmJob(story.film, folder / f"{story.name}.mp4", *SIZE)
+        for story in STORIES
+        if story.film is not None
+    ]
 
 
 def write(folder: pathlib.Path, filmed: bool, console: Console) -> str:
     """Write a plot of each story (SVG), its film if asked for (MP4), and stories.md into a folder.
 
-    Return the line that says which films were asked for and are missing because there is no OpenGL, or "".
+    Return the line that says which films were asked for and are missing because there is no OpenGL,
+    or "".
 
     Raises:
       OutputError: if the folder cannot be written to.
       RenderingError: if a film cannot be drawn for another reason, as without ffmpeg.
     """
     orders = films(folder) if filmed else []
-    missing = opengl.missing([order.path.name for order in orders]) if orders and opengl.problem() else ""
+    missing = ""
+    if orders and opengl.problem():
+        missing = opengl.missing_films_message([order.path.name for order in orders])
     files.write(folder / "letters.svg", letters())
     plots = [PlotJob(story.plot, folder / story.name) for story in STORIES]
-    video.produce(plots if missing else [*orders, *plots], console)
+    drawn = plots if missing else [*orders, *plots]
+    jobs.run_jobs([Job(order.path.name, order.write) for order in drawn], console)
     lines = ["# The paper's stories", "", "![The letters of the formulas](letters.svg)", ""]
-    lines += [f"Films: {missing}", ""] if missing else []
+    if missing:
+        lines += [f"Films: {missing}", ""]
     for story in STORIES:
-        lines += [f"## {story.name}", "", f"![{story.name}]({story.name}.svg)", "", story.caption, ""]
-        lines += [f"[Film]({story.name}.mp4)", ""] if filmed and not missing and story.film is not None else []
+        name = story.name
+        lines += [f"## {name}", "", f"![{name}]({name}.svg)", "", story.caption, ""]
+        if filmed and not missing and story.film is not None:
+            lines += [f"[Film]({name}.mp4)", ""]
     files.write(folder / "stories.md", "\n".join(lines))
     return missing

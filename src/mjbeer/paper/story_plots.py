@@ -9,9 +9,18 @@ import numpy as np
 from matplotlib.axes import Axes
 from scipy.integrate import solve_ivp
 
-from mjbeer.output.plots import COLOURS, GREY, REFERENCE, SIMULATED, THEORY, UNPHYSICAL, name_below, note
+from mjbeer.output.plots import (
+    COLOURS,
+    GREY,
+    REFERENCE,
+    SIMULATED,
+    THEORY,
+    UNPHYSICAL,
+    name_below,
+    note,
+)
 from mjbeer.paper import hopping, oscillation
-from mjbeer.paper.claim import Seen, value
+from mjbeer.paper.claim import Observation, value
 from mjbeer.paper.frozen import PRINTED_8
 from mjbeer.paper.hopping import MU
 from mjbeer.paper.oscillation import SLOW
@@ -20,19 +29,27 @@ from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.scene import Scene, frozen, sliding
 from mjbeer.theory.trajectory import Trajectory, exact
 
-SWING = math.radians(60)  # amplitude [rad] of the swing that shows the hesitation: so wide that the can slows down
-FRICTION = 1.0  # friction coefficient of the incline from which the can lifts off
-HESITATION = partial(simulate, sliding(), 0.8, SWING, integrator="DOP853", times=np.linspace(0, 0.8, 401))
+SWING = math.radians(60)
+"""Amplitude [rad] of the swing that shows the hesitation: so wide that the can slows down."""
+FRICTION = 1.0
+"""Friction coefficient of the incline from which the can lifts off."""
+HESITATION = partial(
+    simulate, sliding(), 0.8, SWING, integrator="DOP853", times=np.linspace(0, 0.8, 401)
+)
 LOOPING = partial(simulate, sliding(), 0.5, 0.0, SLOW, integrator="DOP853")
 """The motion of a film: beer loops so slowly here that its can stays on the incline."""
 ROCKING = partial(simulate, frozen(), 2.0, 0.0, integrator="DOP853")
-LIFT_OFF = partial(simulate, frozen(), 1.0, math.pi, rolling="contact", timestep=2e-4, friction=FRICTION)
+LIFT_OFF = partial(
+    simulate, frozen(), 1.0, math.pi, rolling="contact", timestep=2e-4, friction=FRICTION
+)
 PARTING = partial(LIFT_OFF, times=np.linspace(0.68, 1.0, 1601))
 _PRINTED: dict[str, Any] = {"color": COLOURS[1], "linestyle": "--"}
 """The line of an equation as the paper prints it where that is wrong."""
 _JUMP = 3.0
-"""Change of an angle [degrees] from one point to the next, beyond which a line breaks off: elsewhere it is below 1."""
-_TIME, _TILT = "time t [s]", "φ, the angle of the beer's surface to the incline"
+"""Change of an angle [degrees] from one point to the next, beyond which a line breaks off:
+elsewhere it is below 1."""
+_TIME = "time t [s]"
+_TILT = "φ, the angle of the beer's surface to the incline"
 
 
 def let_go(degrees: float, duration: float = 1.0) -> Trajectory:
@@ -41,33 +58,59 @@ def let_go(degrees: float, duration: float = 1.0) -> Trajectory:
 
 
 def draw_trivial(panels: Sequence[Axes]) -> None:
-    """Draw φ, and how far u and s are ahead of an even acceleration, of beer let go along the incline and at 60°."""
+    """Draw φ, and how far u and s are ahead of an even acceleration, for two starts."""
     angle, ahead = panels
     for degrees, colour, width in ((0, COLOURS[4], 4.0), (60, COLOURS[0], 1.5)):
         run = let_go(degrees)
         even = run.scene.acceleration() * run.time**2 / 2
         centre = run.u - run.scene.load.offset * np.sin(run.phi)
-        angle.plot(run.time, np.degrees(run.phi), color=colour, linewidth=width, label=f"can let go at φ = {degrees}°")
+        angle.plot(
+            run.time,
+            np.degrees(run.phi),
+            color=colour,
+            linewidth=width,
+            label=f"can let go at φ = {degrees}°",
+        )
         ahead.plot(run.time, 1e3 * (run.u - even), color=colour, linewidth=width)
-        ahead.plot(run.time, 1e3 * (centre - even), "k--", label="the beer's centre of mass, in both cans")
+        ahead.plot(
+            run.time, 1e3 * (centre - even), "k--", label="the beer's centre of mass, in both cans"
+        )
     angle.set(ylabel="φ [°]", title=_TILT)
-    ahead.set(xlabel=_TIME, ylabel="u − ½ g sin α t² [mm]", title="How far it is ahead of an even acceleration")
+    ahead.set(
+        xlabel=_TIME,
+        ylabel="u − ½ g sin α t² [mm]",
+        title="How far it is ahead of an even acceleration",
+    )
     name_below((angle, ahead), 2)
 
 
 def draw_hesitation(panels: Sequence[Axes]) -> None:
     """Draw how far a can is ahead of one that accelerates evenly, and eq. (25) as printed."""
     run = HESITATION()
-    scene, times, b = run.scene, run.time, run.scene.load.offset
+    scene = run.scene
+    times = run.time
+    b = scene.load.offset
     even = scene.acceleration() * times**2 / 2
-    # The paper's swing begins at phi = 0, this one at its end: a quarter of a swing later, cos(2 omega t) is -1.
+    # The paper's swing begins at phi = 0, this one at its end: a quarter of a swing later, cos(2
+    # omega t) is -1.
     printed = b * (-(SWING**2) / 4 - SWING**2 * np.cos(2 * scene.frequency() * times) / 2)
     (axes,) = panels
-    axes.plot(times, 1e3 * (exact(scene, times, SWING).u - even), label="exact theory: b sin φ", **THEORY)
+    axes.plot(
+        times, 1e3 * (exact(scene, times, SWING).u - even), label="exact theory: b sin φ", **THEORY
+    )
     axes.plot(times, 1e3 * (run.u - even), label="MuJoCo", **SIMULATED)
-    axes.plot(times, 1e3 * printed, label="eq. (25) as printed, but for a constant: twice in a swing", **_PRINTED)
+    axes.plot(
+        times,
+        1e3 * printed,
+        label="eq. (25) as printed, but for a constant: twice in a swing",
+        **_PRINTED,
+    )
     axes.axhline(0, **REFERENCE)
-    axes.set(xlabel=_TIME, ylabel="u − ½ g sin α t² [mm]", title="Lead of the can over one that accelerates evenly")
+    axes.set(
+        xlabel=_TIME,
+        ylabel="u − ½ g sin α t² [mm]",
+        title="Lead of the can over one that accelerates evenly",
+    )
     name_below([axes], 1)
 
 
@@ -75,7 +118,9 @@ def draw_looping(panels: Sequence[Axes]) -> None:
     """Draw how unevenly beer loops, slowly and fast, beside eqs. (26) and (28)."""
     phase = np.linspace(0, 2 * math.pi, 201)
     x = np.degrees(phase)
-    for axes, start, about in zip(panels, (SLOW, 400.0), ("Slowly", "Fast, in a can held down"), strict=True):
+    for axes, start, about in zip(
+        panels, (SLOW, 400.0), ("Slowly", "Fast, in a can held down"), strict=True
+    ):
         turn = loop(sliding(), start)
         phi = sum(turn.ripple[k] * np.sin(k * phase) for k in range(1, 40))
         once = value(oscillation.CORRECTED_28, turn) * np.sin(phase)
@@ -84,20 +129,28 @@ def draw_looping(panels: Sequence[Axes]) -> None:
         axes.plot(x, printed, label="one ripple in a turn: (26) and (28) as printed", **_PRINTED)
         axes.plot(x[::5], corrected[::5], "k.", label="and a second, twice in a turn: corrected")
         axes.plot(x, np.degrees(phi), label="MuJoCo", **SIMULATED)
-        axes.set(ylabel="beer ahead, φ − Ωt [°]", title=f"{about}: Ω = {turn.Omega:.0f} rad/s in the mean")
+        axes.set(
+            ylabel="beer ahead, φ − Ωt [°]",
+            title=f"{about}: Ω = {turn.Omega:.0f} rad/s in the mean",
+        )
         axes.set_xticks(range(0, 361, 90))
     panels[-1].set_xlabel("even turning, Ωt [°]")
     name_below(panels, 1)
 
 
 def footnote_8_as_printed(scene: Scene, times: np.ndarray, phi0: float) -> np.ndarray:
-    """Return phi [rad] of a half-full massless can by footnote 8's equation as printed, from rest at `phi0` [rad]."""
+    """Return phi [rad] by footnote 8's equation as printed, from rest at `phi0` [rad]."""
+
+    def residual(phi: float, phi_dot: float, phi_ddot: float) -> float:
+        theta = scene.incline + phi
+        state = Observation.of(scene, phi=phi, theta=theta, phi_dot=phi_dot, phi_ddot=phi_ddot)
+        return value(PRINTED_8, state)
 
     def slope(_: float, state: np.ndarray) -> list[float]:
-        phi, rate = state
-        moved = {"phi": phi, "theta": scene.incline + phi, "phi_dot": rate}
-        still, turning = (value(PRINTED_8, Seen.of(scene, **moved, phi_ddot=each)) for each in (0.0, 1.0))
-        return [rate, still / (still - turning)]  # the equation is linear in phi_ddot
+        phi, phi_dot = state
+        without = residual(phi, phi_dot, 0.0)
+        phi_ddot = without / (without - residual(phi, phi_dot, 1.0))  # the equation is linear in it
+        return [phi_dot, phi_ddot]
 
     return solve_ivp(slope, (0, times[-1]), [phi0, 0.0], t_eval=times, rtol=1e-10, atol=1e-12).y[0]
 
@@ -105,7 +158,8 @@ def footnote_8_as_printed(scene: Scene, times: np.ndarray, phi0: float) -> np.nd
 def draw_rocking(panels: Sequence[Axes]) -> None:
     """Draw how frozen beer rocks, by MuJoCo and by footnote 8, and how far each is from theory."""
     run = ROCKING()
-    scene, times = run.scene, run.time
+    scene = run.scene
+    times = run.time
     angle, error = panels
     truth = exact(scene, times, run.phi0).phi
     printed = footnote_8_as_printed(scene, times, run.phi0)
@@ -116,19 +170,30 @@ def draw_rocking(panels: Sequence[Axes]) -> None:
     error.plot(times, np.degrees(run.phi - truth), **SIMULATED)
     error.plot(times, np.degrees(printed - truth), **_PRINTED)
     angle.set(ylabel="φ [°]", title=_TILT)
-    error.set(xlabel=_TIME, ylabel="φ less that of theory [°]", title="How far each is from exact theory")
+    error.set(
+        xlabel=_TIME, ylabel="φ less that of theory [°]", title="How far each is from exact theory"
+    )
     name_below([angle], 2)
 
 
 def draw_roll_down(panels: Sequence[Axes]) -> None:
-    """Draw the roll-down of frozen beer: how far it turns, and how hard the incline would have to push."""
+    """Draw the roll-down of frozen beer: how far it turns, and the normal force."""
     times = np.linspace(0, 1, 1001)
     run = simulate(frozen(), times[-1], math.pi, integrator="DOP853", times=times)
-    scene, parts = run.scene, exact(run.scene, times, math.pi).rolls_until()
-    rolls, pulled = times <= parts, times >= parts
+    scene = run.scene
+    parts = exact(scene, times, math.pi).rolls_until()
+    rolls = times <= parts
+    pulled = times >= parts
     angle, normal = panels
     even = scene.acceleration() / scene.can.radius * times**2 / 2
-    angle.plot(times, np.degrees(even), "--", label="solid cylinder: g sin α t² / 3a", color=GREY, linewidth=1.2)
+    angle.plot(
+        times,
+        np.degrees(even),
+        "--",
+        label="solid cylinder: g sin α t² / 3a",
+        color=GREY,
+        linewidth=1.2,
+    )
     printed = footnote_8_as_printed(scene, times, math.pi) - math.pi
     angle.plot(times[rolls], np.degrees(printed[rolls]), label="footnote 8 as printed", **_PRINTED)
     weights = run.forces.normal / (scene.mass * scene.gravity)
@@ -141,13 +206,15 @@ def draw_roll_down(panels: Sequence[Axes]) -> None:
     note(normal, f"no push at {parts:.3f} s", (parts, 7), (-6, 0), ha="right")
     angle.set(ylabel="φ − 180° [°]", title="How far the can has turned")
     normal.set(
-        xlabel=_TIME, ylabel="normal force / weight", title="How hard the incline pushes; below 0 it would have to pull"
+        xlabel=_TIME,
+        ylabel="normal force / weight",
+        title="How hard the incline pushes; below 0 it would have to pull",
     )
     name_below(panels, 2)
 
 
 def draw_slip_and_hop(panels: Sequence[Axes]) -> None:
-    """Draw the friction that frozen beer's rolling down needs, and how a can with less of it slips and hops."""
+    """Draw the friction that rolling needs, and how a can with less of it slips and hops."""
     contact = LIFT_OFF()
     times = np.linspace(0, 1, 1001)
     rolling = exact(contact.scene, times, math.pi)
@@ -158,19 +225,28 @@ def draw_slip_and_hop(panels: Sequence[Axes]) -> None:
     friction.plot(times, needed, label="needed to roll, exact theory", color="black")
     friction.axhline(FRICTION, **REFERENCE)
     note(friction, f"all that there is: μ = {FRICTION:g}", (0, FRICTION), (6, 8))
-    moved.plot(contact.time, 1e3 * contact.slip, color=COLOURS[1], label="slid instead of rolled, MuJoCo")
-    moved.plot(contact.time, 1e3 * contact.lift, color=COLOURS[0], label="height above the incline, MuJoCo")
+    moved.plot(
+        contact.time, 1e3 * contact.slip, color=COLOURS[1], label="slid instead of rolled, MuJoCo"
+    )
+    moved.plot(
+        contact.time, 1e3 * contact.lift, color=COLOURS[0], label="height above the incline, MuJoCo"
+    )
     for axes in panels:
         axes.axvline(parts, **REFERENCE)
         axes.set_xlim(0, times[-1])
     note(moved, "from here on rolling\nwould need a pull", (parts, 5), (-6, 0), ha="right")
-    friction.set(ylabel="friction / normal force", title="Friction that rolling needs", ylim=(0, 2.2))
+    friction.set(
+        ylabel="friction / normal force", title="Friction that rolling needs", ylim=(0, 2.2)
+    )
     moved.set(xlabel=_TIME, ylabel="distance [mm]", title="What the can does")
     name_below(panels, 2)
 
 
 def skids(ratios: np.ndarray, mu: float) -> np.ndarray:
-    """Return the angles from the top [degrees] at which hoops of ratios M/m skid, with a gap (NaN) at a jump."""
+    """Return the angles from the top [degrees] at which hoops of ratios M/m skid.
+
+    Where the angle jumps there is a gap (NaN).
+    """
     angles = np.degrees([hopping.slip(float(ratio), mu) for ratio in ratios])
     angles[1:][np.abs(np.diff(angles)) > _JUMP] = math.nan
     return angles
@@ -178,8 +254,11 @@ def skids(ratios: np.ndarray, mu: float) -> np.ndarray:
 
 def draw_lift_off(panels: Sequence[Axes]) -> None:
     """Draw where a hoop lifts off and where it skids, over its mass."""
-    # The angle of lift-off rises like a square root just below 1/13, so that the points are denser there.
-    ratios = np.unique(np.append(np.geomspace(1e-3, 0.07, 300), 1 / 13 * (1 - np.geomspace(0.1, 1e-6, 20))))
+    # The angle of lift-off rises like a square root just below 1/13, so that the points are denser
+    # there.
+    ratios = np.unique(
+        np.append(np.geomspace(1e-3, 0.07, 300), 1 / 13 * (1 - np.geomspace(0.1, 1e-6, 20)))
+    )
     few = np.array([2e-3, 8e-3, 0.03, 0.06])
     found = [hopping.takeoff(hopping.fall(float(ratio), GRIP, 5e-5)) for ratio in few]
     measured = [math.nan if angle is None else math.degrees(angle) for angle in found]
@@ -188,13 +267,18 @@ def draw_lift_off(panels: Sequence[Axes]) -> None:
     axes.plot(ratios, lifts, color=COLOURS[0], label="lifts off if it cannot skid, theory")
     axes.plot(few, measured, "o", color=COLOURS[0], label="the same, MuJoCo")
     for mu, colour in ((2.0, COLOURS[3]), (MU, COLOURS[1]), (0.5, COLOURS[4])):
-        axes.plot(ratios, skids(ratios, mu), "--", color=colour, label=f"skids if μ = {mu:g}, theory")
+        axes.plot(
+            ratios, skids(ratios, mu), "--", color=colour, label=f"skids if μ = {mu:g}, theory"
+        )
     axes.axhline(90, **REFERENCE)
     axes.axvline(1 / 13, **REFERENCE)
     note(axes, "Littlewood: 90°", (0.01, 90), (4, -9))
     note(axes, "heavier hoops never lift off: M/m = 1/13", (1 / 13, 70), (-4, 0), ha="right")
     axes.set_xscale("log")
-    axes.set(xlabel="mass of the hoop / weight on its rim, M / m", ylabel="angle of the weight from the top [°]")
+    axes.set(
+        xlabel="mass of the hoop / weight on its rim, M / m",
+        ylabel="angle of the weight from the top [°]",
+    )
     marks = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05)
     axes.set_xticks(marks, map(str, marks))
     axes.tick_params(which="minor", labelbottom=False)

@@ -1,4 +1,4 @@
-"""MuJoCo as a witness: what its forward dynamics computes along a motion; and the motions that several claims share."""
+"""MuJoCo as a witness: its forward dynamics along a motion; and motions that claims share."""
 
 import math
 from functools import cache, partial
@@ -10,7 +10,8 @@ import numpy as np
 from mjbeer.model.build import build
 from mjbeer.model.joints import joint_addresses, to_states
 from mjbeer.model.setting import Integrator, Rolling, supported
-from mjbeer.paper.claim import Bound, Seen, Witness
+from mjbeer.paper.claim import Bound, Observation, Witness
+from mjbeer.simulation.run import Run
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import Can, Load
 from mjbeer.theory.scene import Scene, frozen, pendulum, sliding
@@ -19,8 +20,8 @@ from mjbeer.theory.scene import Scene, frozen, pendulum, sliding
 def simulated(scene: Scene, phi0: float, *more: Any, **settings: Any) -> Witness:
     """Return the witness of a motion; the arguments are those of `watch`.
 
-    Unless told otherwise the can is rolled by a constraint between two joints: that model contains none of the paper's
-    theory. A massless can around a sliding load is beyond it, and is reduced.
+    Unless told otherwise the can is rolled by a constraint between two joints: that model contains
+    none of the paper's theory. A massless can around a sliding load is beyond it, and is reduced.
     """
     settings.setdefault("rolling", "equality" if supported(scene, "equality") else "reduced")
     return Witness(f"MuJoCo, {settings['rolling']}", partial(watch, scene, phi0, *more, **settings))
@@ -36,21 +37,30 @@ def watch(
     samples: int = 101,
     integrator: Integrator = "DOP853",
     timestep: float = 5e-4,
-) -> Seen:
-    """Simulate a motion and return what MuJoCo computes at evenly spaced samples of it, in the coordinates of Fig. 3.
+) -> Observation:
+    """Return what MuJoCo computes at evenly spaced samples of a motion it simulates.
 
-    `s` is read from the position of the load's centre of mass, `across` is how far it is from the axis, away from the
-    incline, and `height` how far above where the axis starts. `theta` [rad] is the angle between gravity and the line
-    from the axis to it. Accelerations are those of mj_forward; `kinetic` and `potential` are energies of the whole [J],
-    and `friction` is the force [N] of the incline on the can, uphill, where a constraint makes it roll, otherwise 0.
+    Coordinates are those of Fig. 3: `s` is read from the position of the load's centre of mass,
+    `across` is how far it is from the axis, away from the incline, and `height` how far above where
+    the axis starts. `theta` [rad] is the angle between gravity and the line from the axis to it.
+    Accelerations are those of mj_forward; `kinetic` and `potential` are energies of the whole [J],
+    and `friction` is the force [N] of the incline on the can, uphill, where a constraint makes it
+    roll, otherwise 0.
     """
     times = np.linspace(0, duration, samples)
     run = simulate(scene, duration, phi0, phi_dot0, rolling, integrator, timestep, times=times)
     model = build(scene, rolling, integrator="DOP853", timestep=timestep)
-    data, names, can = mujoco.MjData(model), joint_addresses(model), model.body("can").id
-    carrier = model.body("load").id if "swing" in names else can
-    axis, load = np.empty((2, samples, 3, 3))
-    phi_dot, phi_ddot, potential, kinetic, friction = np.zeros((5, samples))
+    data = mujoco.MjData(model)
+    joints = joint_addresses(model)
+    can = model.body("can").id
+    carrier = model.body("load").id if "swing" in joints else can  # the body that has the load
+    axis = np.empty((samples, 3, 3))
+    load = np.empty((samples, 3, 3))
+    phi_dot = np.zeros(samples)
+    phi_ddot = np.zeros(samples)
+    potential = np.zeros(samples)
+    kinetic = np.zeros(samples)
+    friction = np.zeros(samples)
     for k, state in enumerate(to_states(model, run)):
         data.qpos[:], data.qvel[:] = np.split(state, [model.nq])
         mujoco.mj_forward(model, data)
@@ -61,60 +71,94 @@ def watch(
         load[k] = _point_motion(model, data, centre, carrier)
         turn = np.zeros((3, model.nv))
         mujoco.mj_jac(model, data, None, turn, data.xpos[carrier], carrier)
-        phi_dot[k], phi_ddot[k] = turn[1] @ data.qvel, turn[1] @ data.qacc
+        phi_dot[k] = turn[1] @ data.qvel
+        phi_ddot[k] = turn[1] @ data.qacc
         potential[k], kinetic[k] = data.energy
-        if "slide" in names:
+        if "slide" in joints:
             friction[k] = -data.qfrc_constraint[model.joint("slide").dofadr[0]]
-    down, start = model.opt.gravity / scene.gravity, axis[0, 0, 2]
-    arm, side = load[:, 0] - axis[:, 0], np.array([-down[2], 0, down[0]])  # a quarter turn from gravity, downhill
-    coordinates = {"s": load[:, :, 0], "u": axis[:, :, 0], "across": load[:, :, 2] - axis[:, :, 2]}
-    moved = {
-        name + dots: column
-        for name, columns in coordinates.items()
-        for dots, column in zip(("", "_dot", "_ddot"), columns.T, strict=True)
-    }
-    moved |= {"phi": run.phi, "phi_dot": phi_dot, "phi_ddot": phi_ddot, "theta": np.arctan2(-arm @ side, arm @ down)}
-    height, level = -(load[:, 0] - [0, 0, start]) @ down, scene.mass * model.opt.gravity[2] * start
-    forces = {"kinetic": kinetic, "potential": potential + level, "friction": friction}
-    return Seen.of(scene, time=run.time, height=height, **moved, **forces)
+    down = model.opt.gravity / scene.gravity
+    downhill = np.array([-down[2], 0, down[0]])  # a quarter turn from gravity
+    arm = load[:, 0] - axis[:, 0]
+    start = axis[0, 0, 2]  # the height at which the axis starts, in the model
+    s, s_dot, s_ddot = load[:, :, 0].T
+    u, u_dot, u_ddot = axis[:, :, 0].T
+    across, across_dot, across_ddot = (load - axis)[:, :, 2].T
+    return Observation.of(
+        scene,
+        time=run.time,
+        s=s,
+        s_dot=s_dot,
+        s_ddot=s_ddot,
+        u=u,
+        u_dot=u_dot,
+        u_ddot=u_ddot,
+        across=across,
+        across_dot=across_dot,
+        across_ddot=across_ddot,
+        phi=run.phi,
+        phi_dot=phi_dot,
+        phi_ddot=phi_ddot,
+        theta=np.arctan2(-arm @ downhill, arm @ down),
+        height=-(load[:, 0] - [0, 0, start]) @ down,
+        kinetic=kinetic,
+        potential=potential + scene.mass * model.opt.gravity[2] * start,
+        friction=friction,
+    )
 
 
-def _point_motion(model: mujoco.MjModel, data: mujoco.MjData, point: np.ndarray, body: int) -> np.ndarray:
-    """Return the position, velocity and acceleration of a point of a body, shape (3, 3), in SI units."""
-    jacobian, change = np.zeros((3, model.nv)), np.zeros((3, model.nv))
+def _point_motion(
+    model: mujoco.MjModel, data: mujoco.MjData, point: np.ndarray, body: int
+) -> np.ndarray:
+    """Return position, velocity and acceleration of a point of a body, shape (3, 3)."""
+    jacobian = np.zeros((3, model.nv))
+    change = np.zeros((3, model.nv))
     mujoco.mj_jac(model, data, jacobian, None, point, body)
     mujoco.mj_jacDot(model, data, change, None, point, body)
     return np.stack([point, jacobian @ data.qvel, jacobian @ data.qacc + change @ data.qvel])
 
 
 @cache
-def oscillate(scene: Scene, phi0: float, duration: float = 4.0, rolling: Rolling = "reduced") -> Seen:
-    """Return the frequency `omega` [rad/s] of a swing that is simulated in 4000 steps, and its `rest` [rad]."""
-    run = simulate(scene, duration, phi0, rolling=rolling, integrator="DOP853", timestep=duration / 4000)
-    return Seen.of(scene, omega=run.frequency(), rest=scene.equilibrium())
+def oscillate(
+    scene: Scene, phi0: float, duration: float = 4.0, rolling: Rolling = "reduced"
+) -> Observation:
+    """Return the frequency `omega` [rad/s] and the `rest` [rad] of a swing in 4000 steps."""
+    run = simulate(
+        scene, duration, phi0, rolling=rolling, integrator="DOP853", timestep=duration / 4000
+    )
+    return Observation.of(scene, omega=run.frequency(), rest=scene.equilibrium())
 
 
 def footnote_scene(part: float = 1.0) -> Scene:
-    """Return the scene of footnote 8: a = 3 cm, b = 1 cm, alpha = 10 degrees, g = 980 cm/s^2, I_axis = m a^2/2.
+    """Return the scene of footnote 8, with `part` of its b.
 
-    `part` scales b.
+    It has a = 3 cm, b = 1 cm, alpha = 10 degrees, g = 980 cm/s^2 and I_axis = m a^2/2.
     """
-    a, b, mass = 0.03, 0.01 * part, 1.0
-    return Scene(Can.massless(a), Load(mass, b, mass * (a**2 / 2 - b**2)), math.radians(10), "frozen", 9.8)
+    a = 0.03
+    b = 0.01 * part
+    load = Load(mass=1.0, offset=b, inertia=1.0 * (a**2 / 2 - b**2))
+    return Scene(Can.massless(a), load, math.radians(10), "frozen", gravity=9.8)
 
 
 def balanced(k: float) -> Scene:
-    """Return a rolling cylinder of inertia k m a^2 about its axis: a balanced load frozen to a massless can."""
+    """Return a rolling cylinder of inertia k m a^2: a balanced load frozen to a massless can."""
     can = Can.massless()
-    return Scene(can, Load(0.2, 0.0, k * 0.2 * can.radius**2), attachment="frozen")
+    load = Load(mass=0.2, offset=0.0, inertia=k * 0.2 * can.radius**2)
+    return Scene(can, load, attachment="frozen")
 
 
-REDUCED, EQUALITY, CONTACT = "MuJoCo, reduced", "MuJoCo, equality", "MuJoCo, contact"
+REDUCED = "MuJoCo, reduced"
+EQUALITY = "MuJoCo, equality"
+CONTACT = "MuJoCo, contact"
 SMALL = 1e-3  # amplitude [rad] of a small swing
 # At 2 rad every term of an equation matters; 1 rad is clearly not small.
-SWING, WIDE, TENTH, NARROW = (simulated(sliding(), amplitude) for amplitude in (2.0, 1.0, 0.1, SMALL))
-METAL, WHEEL = simulated(sliding(can=Can.sheet_metal()), 2.0), simulated(pendulum(), 2.0)
-ROLL_DOWN, FOOTNOTE_8 = (simulated(scene, math.pi, 0.8) for scene in (frozen(), footnote_scene()))
+SWING = simulated(sliding(), 2.0)
+WIDE = simulated(sliding(), 1.0)
+TENTH = simulated(sliding(), 0.1)
+NARROW = simulated(sliding(), SMALL)
+METAL = simulated(sliding(can=Can.sheet_metal()), 2.0)
+WHEEL = simulated(pendulum(), 2.0)
+ROLL_DOWN = simulated(frozen(), math.pi, 0.8)
+FOOTNOTE_8 = simulated(footnote_scene(), math.pi, 0.8)
 EXACT = Bound(1e-12, "rounding of MuJoCo's forward dynamics")
 DRIFT = "what MuJoCo's joint equality takes back of its drift"
 HELD = Bound(2e-8, DRIFT)
@@ -124,22 +168,31 @@ _SAMPLES = 256  # samples of one turn; ripples up to the 128th multiple of the r
 
 
 @cache
-def loop(scene: Scene, phi_dot0: float) -> Seen:
-    """Simulate one turn of a load that loops from phi = 0, for which `phi_dot0` [rad/s] must be enough.
+def loop(scene: Scene, phi_dot0: float) -> Observation:
+    """Simulate one turn of a load that loops from phi = 0 with `phi_dot0` [rad/s].
 
-    Its mean rate is `Omega` [rad/s]. `ripple` has the amplitudes [rad] of sin(k Omega t) in phi - Omega t, at index k,
-    and `sway` those [m] in u less its steady acceleration.
+    Its mean rate is `Omega` [rad/s]. `ripple` has the amplitudes [rad] of sin(k Omega t) in phi -
+    Omega t, at index k, and `sway` those [m] in u less its steady acceleration.
     """
     turn = 2 * math.pi / phi_dot0
     for _ in range(8):  # Newton's method for the time of a turn
-        end = simulate(scene, turn, 0.0, phi_dot0, integrator="DOP853", timestep=turn / 64, times=np.array([0, turn]))
+        end = _one_turn(scene, turn, phi_dot0, np.array([0, turn]))
         turn += (2 * math.pi - end.phi[-1]) / end.phi_dot[-1]
-    times, rate = turn * np.arange(_SAMPLES) / _SAMPLES, 2 * math.pi / turn
-    run = simulate(scene, turn, 0.0, phi_dot0, integrator="DOP853", timestep=turn / 64, times=times)
+    times = turn * np.arange(_SAMPLES) / _SAMPLES
+    run = _one_turn(scene, turn, phi_dot0, times)
+    rate = 2 * math.pi / turn
+    ripple = sines(run.phi - rate * times)
     sway = sines(run.u - scene.acceleration() * times**2 / 2)
-    return Seen.of(scene, Omega=rate, ripple=sines(run.phi - rate * times), sway=sway)
+    return Observation.of(scene, Omega=rate, ripple=ripple, sway=sway)
+
+
+def _one_turn(scene: Scene, turn: float, phi_dot0: float, times: np.ndarray) -> Run:
+    """Return a turn of a load, of about `turn` [s], at some times [s]."""
+    return simulate(
+        scene, turn, 0.0, phi_dot0, integrator="DOP853", timestep=turn / 64, times=times
+    )
 
 
 def sines(values: np.ndarray) -> np.ndarray:
-    """Return the amplitudes of sin(2 pi k x), at index k, in values that are evenly spaced over one period of x."""
+    """Return the amplitudes of sin(2 pi k x), at index k, in values over one period of x."""
     return -np.fft.rfft(values).imag * 2 / len(values)

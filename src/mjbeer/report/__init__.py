@@ -1,1 +1,1 @@
-"""`mjbeer report`: the checks, the films, the paper's stories, and one page that shows it all. Only `cli` uses it."""
+"""`mjbeer report`: checks, films and stories on one page. Only `cli` uses it."""

@@ -1,4 +1,7 @@
-"""The report: one page that opens from the disk and fetches nothing; more maps and a race to play lie beside it."""
+"""The report: one page that opens from the disk and fetches nothing.
+
+More maps and a race to play lie beside it.
+"""
 
 import base64
 import html
@@ -6,11 +9,10 @@ import pathlib
 import re
 import tempfile
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
-from types import SimpleNamespace
-from typing import Any
+from typing import NamedTuple
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from latex2mathml.converter import convert
@@ -18,9 +20,10 @@ from markupsafe import Markup, escape
 from rich.console import Console
 
 from mjbeer import paper
-from mjbeer.drawing import opengl, video
+from mjbeer.drawing import opengl
 from mjbeer.drawing.video import PlotJob
-from mjbeer.output import files
+from mjbeer.output import files, jobs
+from mjbeer.output.jobs import Job
 from mjbeer.output.plots import Picture
 from mjbeer.paper import stories
 from mjbeer.report import films
@@ -31,24 +34,39 @@ from mjbeer.studies.study import machine
 from mjbeer.studies.validation.validate import Validation, validate
 
 _HERE = pathlib.Path(__file__).parent
-_LIVE = _HERE / "web" / "live.html", _HERE.parents[2] / "docs" / "live.html"  # in a wheel, and in a checkout
-_MAP = "stability-solref"  # the map on the page; the others lie beside it
+_LIVE = (_HERE / "web" / "live.html", _HERE.parents[2] / "docs" / "live.html")
+"""Where the race to play is, in a wheel and in a checkout."""
+_MAP = "stability-solref"
+"""The map on the page; the others lie beside it."""
 _MATHML = {
     'display="block"': 'display="inline" displaystyle="true"',
     'mathcolor="differs"': 'class="differs"',
-    "<mi>sin</mi>": '<mi class="function">sin</mi>',  # so that the style can set them apart from the letters around
+    # So that the style can set them apart from the letters around.
+    "<mi>sin</mi>": '<mi class="function">sin</mi>',
     "<mi>cos</mi>": '<mi class="function">cos</mi>',
-    '<mspace width="negativethinmathspace" />': "",  # a name of MathML 2, which browsers no longer know
+    # A name of MathML 2, which browsers no longer know.
+    '<mspace width="negativethinmathspace" />': "",
 }
+"""What is replaced in the MathML of latex2mathml."""
 _GREEK = r"(?<![A-Za-z])(alpha|beta|delta|epsilon|theta|mu|pi|phi|omega|Omega)(?![A-Za-z])"
 _RAISED = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
+
+
+class ShownFilm(NamedTuple):
+    """A film on the page."""
+
+    video: bytes
+    """As MP4."""
+    still: bytes
+    """A picture of it, as WebP."""
 
 
 def write(folder: pathlib.Path, quick: bool, console: Console) -> tuple[Validation, str]:
     """Write index.html, live.html and the maps that lie beside it into a folder.
 
-    Quickly, the films are smaller and the stories have plots and no films. Where there is no OpenGL, there are no
-    films. What comes back is the validation, and the line that says which films are missing, or "".
+    Quickly, the films are smaller and the stories have plots and no films. Where there is no
+    OpenGL, there are no films. What comes back is the validation, and the line that says which
+    films are missing, or "".
 
     Raises:
       OutputError: if the folder cannot be written to.
@@ -56,47 +74,65 @@ def write(folder: pathlib.Path, quick: bool, console: Console) -> tuple[Validati
     """
     with tempfile.TemporaryDirectory() as work:
         filmed = films.film_jobs(pathlib.Path(work), quick)
-        not_drawn = opengl.missing([each.path.stem for each in filmed]) if opengl.problem() else ""
-        filmed = [] if not_drawn else filmed
+        not_drawn = ""
+        if opengl.problem():
+            not_drawn = opengl.missing_films_message([job.path.stem for job in filmed])
+            filmed = []
         # The checks take longest, and compile what the films run; plots are quick.
-        checks = SimpleNamespace(path=folder / "checks", write=partial(validate, None))
-        validation, *made = video.produce([checks, *filmed, *plot_jobs(folder)], console)
-        stills, plots = made[: len(filmed)], made[len(filmed) :]
-        shown = {each.path.stem: (each.path.read_bytes(), still) for each, still in zip(filmed, stills, strict=True)}
+        checks = Job("the checks", partial(validate, None))
+        drawn = [Job(job.path.name, job.write) for job in (*filmed, *plot_jobs(folder))]
+        validation, *made = jobs.run_jobs([checks, *drawn], console)
+        stills = made[: len(filmed)]
+        plots = made[len(filmed) :]
+        shown = {
+            job.path.stem: ShownFilm(job.path.read_bytes(), still)
+            for job, still in zip(filmed, stills, strict=True)
+        }
         pictures = {plot.name: plot for plot in plots if plot}
-        files.write(folder / "live.html", next(filter(pathlib.Path.is_file, _LIVE)).read_text(encoding="utf-8"))
+        live = next(path for path in _LIVE if path.is_file())
+        files.write(folder / "live.html", live.read_text(encoding="utf-8"))
         files.write(folder / "index.html", page(validation, shown, pictures, quick, not_drawn))
     return validation, not_drawn
 
 
 def plot_jobs(folder: pathlib.Path) -> list[PlotJob]:
-    """Return the plots of the page, by the names of files in a folder, into which maps are drawn that lie beside it."""
-    benchmark, maps = Benchmark.load(SHIPPED), stability_maps.figures(stability_maps.load())
-    drawn: dict[str, Callable[[Any], None]] = {
-        f"error-{case}": partial(work_precision.draw, replace(benchmark, points=benchmark.of(case)))
-        for case in benchmark.cases
-    }
-    drawn |= {story.name: story.plot for story in stories.STORIES} | maps
-    return [PlotJob(draw, folder / name, name not in maps or name == _MAP) for name, draw in drawn.items()]
+    """Return the plots of the page; the maps that lie beside it are drawn into a folder."""
+    benchmark = Benchmark.load(SHIPPED)
+    jobs = []
+    for case in benchmark.cases:
+        of_case = replace(benchmark, points=benchmark.of(case))
+        draw = partial(work_precision.draw, of_case)
+        jobs.append(PlotJob(draw, folder / f"error-{case}", in_memory=True))
+    for story in stories.STORIES:
+        jobs.append(PlotJob(story.plot, folder / story.name, in_memory=True))
+    for name, draw in stability_maps.figures(stability_maps.load()).items():
+        jobs.append(PlotJob(draw, folder / name, in_memory=name == _MAP))
+    return jobs
 
 
 def page(
     validation: Validation,
-    drawn: Mapping[str, tuple[bytes, bytes]],
+    drawn: Mapping[str, ShownFilm],
     plots: Mapping[str, Picture],
     quick: bool,
     not_drawn: str,
 ) -> str:
-    """Return the page as HTML, with plots and `drawn` films (as MP4, and a picture of each as WebP) by their names;
-    `not_drawn` says why films are missing, or is ""."""
+    """Return the page as HTML, with plots and `drawn` films by their names.
+
+    `not_drawn` says why films are missing, or is "".
+    """
     loader = PackageLoader("mjbeer.report", "web")
     environment = Environment(loader=loader, autoescape=True, undefined=StrictUndefined)
     environment.filters |= {"mathml": mathml, "share": share, "marked": _marked, "data": _data}
-    benchmark, maps = Benchmark.load(SHIPPED), stability_maps.load()
-    runs, border = stability_maps.summary(maps["maps"])
-    claims = {(claim.equation, claim.quantity): claim for claim in paper.claims() if claim.misprint}
+    benchmark = Benchmark.load(SHIPPED)
+    maps = stability_maps.load()
+    runs, border = stability_maps.summary(maps.maps)
+    claims = paper.claims()
+    misprinted = {(claim.equation, claim.quantity): claim for claim in claims if claim.misprint}
     misprints = [
-        (result, claims[name]) for result in validation.audit if (name := (result.group, result.name)) in claims
+        (result, misprinted[result.group, result.name])
+        for result in validation.audit
+        if (result.group, result.name) in misprinted
     ]
     return environment.get_template("page.html").render(
         films=films,
@@ -113,7 +149,7 @@ def page(
         border=border,
         misprints=misprints,
         kinds=Counter(claim.misprint.kind for _, claim in misprints if claim.misprint),
-        quoted=[claim for claim in paper.claims() if claim.quote and not claim.misprint],
+        quoted=[claim for claim in claims if claim.quote and not claim.misprint],
         stories=stories,
         plots=plots,
         validation=validation,
@@ -123,11 +159,17 @@ def page(
 
 
 def share(value: float) -> Markup:
-    """Return a share of the largest term as HTML: a percentage in two digits, three from 100 on, or a power of ten."""
+    """Return a share of the largest term as HTML: a percentage, or a power of ten.
+
+    A percentage has two digits, or three from 100 on.
+    """
+    if abs(value) >= 1:
+        return escape(f"{100 * value:.3g} %")
     if abs(value) >= 1e-3 or value == 0:
-        return escape(f"{100 * value:.3g} %" if abs(value) >= 1 else f"{100 * value:.2g} %")
+        return escape(f"{100 * value:.2g} %")
     digits, power = f"{value:.1e}".split("e")
-    return Markup("{}&thinsp;·&thinsp;10<sup>{}</sup>").format(digits, f"{int(power)}".replace("-", "\N{MINUS SIGN}"))
+    exponent = f"{int(power)}".replace("-", "\N{MINUS SIGN}")
+    return Markup("{}&thinsp;·&thinsp;10<sup>{}</sup>").format(digits, exponent)
 
 
 def mathml(latex: str) -> Markup:
@@ -146,7 +188,8 @@ def letters(text: str) -> str:
     text = re.sub(_GREEK, lambda name: html.unescape(f"&{name[1]};"), text)
     text = re.sub(r"(?<![A-Za-z])(\w)_ddot", "\\1\N{COMBINING DIAERESIS}", text)
     text = re.sub(r"(?<![A-Za-z])(\w)_dot", "\\1\N{COMBINING DOT ABOVE}", text)
-    return re.sub(r"\^(\d)(?!\d)", lambda power: power[1].translate(_RAISED), text).replace("_0", "₀")
+    text = re.sub(r"\^(\d)(?!\d)", lambda power: power[1].translate(_RAISED), text)
+    return text.replace("_0", "₀")
 
 
 def _data(content: bytes | str, kind: str) -> str:
@@ -156,5 +199,6 @@ def _data(content: bytes | str, kind: str) -> str:
 
 
 def _marked(cell: str) -> Markup:
-    """Return a text of a table as HTML, with Greek letters; what stands between two pairs of asterisks is strong."""
-    return Markup(re.sub(r"\*\*(.+?)\*\*", r"<strong>\1</strong>", str(escape(letters(cell)))))
+    """Return a text of a table as HTML, with Greek letters; what is in **asterisks** is strong."""
+    text = str(escape(letters(cell)))
+    return Markup(re.sub(r"\*\*(.+?)\*\*", r"<strong>\1</strong>", text))

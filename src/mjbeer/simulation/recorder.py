@@ -15,12 +15,16 @@ from mjbeer.theory.scene import Scene
 class Recorder:
     """Makes the record of a run of a scene's model: an `Observer`.
 
-    It looks at the ends of all steps. Steps of mjbeer's own integrators are so long that forces have to be looked for
-    within them, too.
+    It looks at the ends of all steps. Steps of mjbeer's own integrators are so long that forces
+    have to be looked for within them, too.
     """
 
     def __init__(
-        self, model: mujoco.MjModel, scene: Scene, friction: float = math.inf, look_within_steps: bool = False
+        self,
+        model: mujoco.MjModel,
+        scene: Scene,
+        friction: float = math.inf,
+        look_within_steps: bool = False,
     ) -> None:
         self._model = model
         self._scene = scene
@@ -40,15 +44,15 @@ class Recorder:
             self._maker.add(motion)
             return
         self._maker.add_states(motion)
+        ends = _Ends.of(self._scene, motion)
         if self._last is None:
             start = select_samples(motion, [0])
             self._maker.add_forces(start.time, start.phi, start.phi_dot, start.u_dot)
-        ends = _Ends.of(self._scene, motion)
-        if self._last is not None:
-            ends = _Ends(*np.concatenate([self._last, ends], axis=1))
+        else:
+            ends = self._last.followed_by(ends)
         if len(ends.time) > 1:
             self._add_forces_within(ends)
-        self._last = _Ends(*(row[-1:] for row in ends))
+        self._last = ends.last()
 
     def _add_forces_within(self, ends: "_Ends") -> None:
         """Add the forces at points within steps, and at all of their ends except the first."""
@@ -84,10 +88,19 @@ class _Ends(NamedTuple):
             u_ddot=u_ddot,
         )
 
+    def followed_by(self, more: "_Ends") -> "_Ends":
+        """Return these ends and `more` of them."""
+        return _Ends(*np.concatenate([self, more], axis=1))
+
+    def last(self) -> "_Ends":
+        """Return the last end alone."""
+        return _Ends(*(values[-1:] for values in self))
+
 
 _POINTS = 32
-"""Points in a step at which forces are looked for. A step may be half a swing long, in which N varies by its own size;
-between two points its extreme is then a thousandth of that beyond the larger one, (pi/64)^2/2."""
+"""Points in a step at which forces are looked for. A step may be half a swing long. If N varies in
+it by its own size, then its extreme between two points is (pi/64)^2/2, a thousandth, beyond
+them."""
 _SHARES = np.arange(1, _POINTS + 1) / _POINTS
 _POWERS = np.arange(1, 6)
 _CONDITIONS = np.array(
@@ -101,18 +114,23 @@ _CONDITIONS = np.array(
 )
 """What the polynomial c1 x + ... + c5 x^5, with x from 0 to 1 over a step, has to fulfil."""
 _COEFFICIENTS = np.linalg.inv(_CONDITIONS)
+"""The inverse: the coefficients are its product with the five numbers that fulfil the
+conditions."""
 _CHANGES = _SHARES[:, np.newaxis] ** _POWERS @ _COEFFICIENTS
+"""Change since the beginning, a row for each point within the step: its product with these numbers
+is what the polynomial is there."""
 _SLOPES = _POWERS * _SHARES[:, np.newaxis] ** (_POWERS - 1) @ _COEFFICIENTS
-"""What gives the change since the beginning and the slope at the points within a step, from the five conditions."""
+"""The same for the slope."""
 
 
 def _interpolate(
     step: np.ndarray, value: np.ndarray, slope: np.ndarray, bend: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the change of a coordinate since the beginning of each step, and its slope, at the points within.
+    """Return how a coordinate has changed since the beginning of each step, and its slope.
 
-    Given are the lengths of the steps [s], shape (steps, 1), and at their ends the coordinate and its first and second
-    derivatives, shape (steps + 1,). What comes back has the shape (steps, points).
+    Both are at the points within a step, shape (steps, points). Given are the lengths of the steps
+    [s], shape (steps, 1), and at their ends the coordinate and its first and second derivatives,
+    shape (steps + 1,).
     """
     length = step[:, 0]
     conditions = np.stack(

@@ -1,4 +1,4 @@
-"""What takes a second run: the error of a fixed timestep, and until when a can rolls with some friction."""
+"""What takes a second run: the error of a fixed timestep, and rolling with some friction."""
 
 import math
 
@@ -13,24 +13,27 @@ from mjbeer.theory.record import Record
 from mjbeer.theory.trajectory import largest_error
 
 _OVER_DISTANCE = 3.2
-"""Error estimate divided by the distance to an uneven run. A contact is 0.62 times as soft in that run, so that its
-distance is 1/2.6 of the error; 3.2 allows for an order that has not settled."""
+"""Error estimate divided by the distance to an uneven run. A contact is 0.62 times as soft in that
+run, so that its distance is 1/2.6 of the error; 3.2 allows for an order that has not settled."""
 _DEPTH = 0.5
-"""Depth at which a can in contact starts in the uneven run, divided by that in the run. The errors by softness in the
-two parts of a step fall to 0.62 and 0.38 of themselves; half the depth lies between, so that they cannot cancel."""
+"""Depth at which a can in contact starts in the uneven run, divided by that in the run. The errors
+by softness in the two parts of a step fall to 0.62 and 0.38 of themselves; half the depth lies
+between, so that they cannot cancel."""
 
 
 def compare_uneven(run: Run) -> float:
-    """Return the error of phi and u/a [rad] that an uneven run shows, relative beyond 1 rad; infinite if that diverges.
+    """Return the error of phi and u/a [rad] that an uneven run shows, relative beyond 1 rad.
 
-    Constraints that are tuned to the timestep are harder in it, so that its distance from the first run includes the
-    effect of their softness. It begins a little aside, which adds that of rounding, and of a contact's depth.
+    It is infinite if that run diverges. Constraints that are tuned to the timestep are harder in
+    the uneven run, so that its distance from the first one includes the effect of their softness.
+    It begins a little aside, which adds the effect of rounding and of a contact's depth.
     """
     scene = run.scene
     motion = run.checkpoints
     phi0 = reduced(run.phi0)
     u0, _ = scene.initial_axis(phi0, run.phi_dot0)
-    stepped = SteppedModel(model_numbers(scene, run.setting, uneven=True))  # the kept one may have another scene
+    # The kept model may have another scene.
+    stepped = SteppedModel(model_numbers(scene, run.setting, uneven=True))
     start = stepped.initial_state(phi0 + NUDGE, run.phi_dot0)
     if run.rolling == "contact":
         start[joint_addresses(stepped.model)["lift"]] *= _DEPTH
@@ -43,8 +46,9 @@ def compare_uneven(run: Run) -> float:
 
 
 def record_with_friction(run: Run, friction: float) -> Record:
-    """Return the record of the same run, which says until when a can rolls with a coefficient of `friction`."""
+    """Return the record of the same run for a can with a coefficient of `friction`."""
     stepped = SteppedModel(model_numbers(run.scene, run.setting))
     start = stepped.initial_state(reduced(run.phi0), run.phi_dot0)
     rounding = turns_rounding(run.phi0)
-    return solve(stepped, run.setting, start, run.checkpoints.time, friction=friction, rounding=rounding).record
+    times = run.checkpoints.time
+    return solve(stepped, run.setting, start, times, friction=friction, rounding=rounding).record

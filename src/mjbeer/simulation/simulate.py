@@ -16,20 +16,23 @@ from mjbeer.simulation.methods import model_numbers
 from mjbeer.simulation.run import Run, diagnose_run, turns_rounding
 from mjbeer.simulation.solve import solve
 from mjbeer.simulation.stepped_model import kept_model
+from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.oscillator import reduced
 from mjbeer.theory.scene import DURATION, PHI0, Scene
 
 _ON_A_STEP = 1e-10
-"""Largest distance of a requested time from a multiple of the timestep, over the time: a running sum of a million
-timesteps, as MuJoCo's own clock counts, is 2e-11 off (measured)."""
+"""Largest distance of a requested time from a multiple of the timestep, divided by the time: a sum
+of a million timesteps, as MuJoCo's own clock makes it, is 2e-11 off (measured)."""
 _MOST_SAMPLES = 1e8
 """Largest number of samples at every timestep: they take ten gigabytes."""
 _MOST_STEPS = 1e12
 """Largest number of steps: at half a microsecond each they take a week."""
 _CHECKPOINTS = 4096
-"""Number of timesteps, evenly spread over a run, at which a second run is compared with it besides the samples."""
+"""Number of timesteps, evenly spread over a run, at which a second run is compared with it besides
+the samples."""
 _PARTS = np.arange(33) / 32
-"""Ends of the parts of a run to a tolerance, as shares of it: its runs are compared in each part at least once."""
+"""Ends of the parts of a run to a tolerance, as shares of it: its runs are compared in each part at
+least once."""
 
 
 def simulate(
@@ -49,22 +52,26 @@ def simulate(
 
     Args:
       scene: what rolls.
-      duration: how long [s], 2 s if neither it nor `times` is given; samples at every timestep end with the first one
-        at or after it. With `times` it is only checked: none may be later.
+      duration: how long [s], 2 s if neither it nor `times` is given; samples at every timestep end
+        with the first one at or after it. With `times` it is only checked: none may be later.
       phi0: angle of the load to the incline at the start [rad].
       phi_dot0: its rate at the start [rad/s].
       rolling: how the can is made to roll, as in `build`: "reduced", "equality" or "contact".
-      integrator: one of MuJoCo's five, "DOP853" or, in "reduced" without damping, "GaussJackson"; RK4 if none is given.
-      timestep: fixed timestep [s], to which a contact is tuned; with a tolerance the interval between samples.
-      tolerance: largest error of phi and u/a [rad], relative beyond 1 rad, to which the integrator and its steps are
-        then chosen. A "contact" is refused, as its softness is an error of the model.
-      times: increasing times of the samples [s], for MuJoCo's integrators multiples of the timestep.
+      integrator: one of MuJoCo's five, "DOP853" or, in "reduced" without damping, "GaussJackson";
+        RK4 if none is given.
+      timestep: fixed timestep [s], to which a contact is tuned; with a tolerance the interval
+        between samples.
+      tolerance: largest error of phi and u/a [rad], relative beyond 1 rad, to which the integrator
+        and its steps are then chosen. A "contact" is refused, as its softness is an error of the
+        model.
+      times: increasing times of the samples [s], for MuJoCo's integrators multiples of the
+        timestep.
       friction: coefficient of friction of a contact.
       mjcf: a folder of MJCF that is read instead of mjbeer's, as in `build`.
 
-    A run that slips, parts from the incline, drifts in energy, or would have to be pulled at gives an
-    `UntrustedWarning`, one in which a liquid is no lump any more a `LiquidWarning`, and a start beyond a whole turn an
-    `AngleWarning`.
+    A run that slips, parts from the incline, drifts in energy, or would have to be pulled at gives
+    an `UntrustedWarning`, one in which a liquid is no lump any more a `LiquidWarning`, and a start
+    beyond a whole turn an `AngleWarning`.
 
     Raises:
       ParameterError: if a parameter is not allowed.
@@ -78,15 +85,19 @@ def simulate(
         duration = require.positive("duration", duration, "s")
     phi0, phi_dot0 = require.start(phi0, phi_dot0)
     require.warn_of_degrees(phi0)
-    setting = Setting.of(integrator, tolerance, rolling=rolling, timestep=timestep, friction=friction, mjcf=mjcf)
+    setting = Setting.of(
+        integrator, tolerance, rolling=rolling, timestep=timestep, friction=friction, mjcf=mjcf
+    )
     if times is None:
         sample_times = _every_step(DURATION if duration is None else duration, setting.timestep)
     else:
-        sample_times = _sample_times(duration, setting, require.times("times", times, increasing=True))
+        times = require.times("times", times, increasing=True)
+        sample_times = _sample_times(duration, setting, times)
     run = integrate(scene, phi0=phi0, phi_dot0=phi_dot0, setting=setting, times=sample_times)
     reasons = (*run.diagnosis.solver, *run.diagnosis.rolling)
     if reasons:
-        warnings.warn("this run is not to be relied on: " + "; ".join(reasons), UntrustedWarning, stacklevel=2)
+        message = "this run is not to be relied on: " + "; ".join(reasons)
+        warnings.warn(message, UntrustedWarning, stacklevel=2)
     for reason in run.diagnosis.liquid:
         warnings.warn(reason, LiquidWarning, stacklevel=2)
     return run
@@ -97,8 +108,8 @@ def _every_step(duration: float, timestep: float) -> np.ndarray:
     ratio = duration / timestep
     if ratio > _MOST_SAMPLES:
         raise ParameterError(
-            f"a duration of {duration!r} s has too many timesteps of {timestep!r} s: at most {_MOST_SAMPLES:g}, "
-            "or say with times= which samples to keep"
+            f"a duration of {duration!r} s has too many timesteps of {timestep!r} s: "
+            f"at most {_MOST_SAMPLES:g}, or say with times= which samples to keep"
         )
     nearest = round(ratio)
     last = nearest if abs(ratio - nearest) <= _ON_A_STEP * ratio else math.ceil(ratio)
@@ -106,52 +117,49 @@ def _every_step(duration: float, timestep: float) -> np.ndarray:
 
 
 def _sample_times(duration: float | None, setting: Setting, times: np.ndarray) -> np.ndarray:
-    """Return the times of the samples [s], which for MuJoCo's integrators are exact multiples of the timestep."""
+    """Return the times of the samples [s]; MuJoCo's integrators have exact multiples of a step."""
     timestep = setting.timestep
     if duration is not None and times[-1] > duration * (1 + _ON_A_STEP):
-        raise ParameterError(f"times must be between 0 and the duration {duration!r} s, got {times[-1]} s")
+        raise ParameterError(
+            f"times must be between 0 and the duration {duration!r} s, got {times[-1]} s"
+        )
     if setting.tolerance is not None:
         return times
     ratios = times / timestep
     if ratios[-1] > _MOST_STEPS:
-        raise ParameterError(f"times must be within {_MOST_STEPS:g} timesteps of {timestep!r} s, got {times[-1]} s")
+        raise ParameterError(
+            f"times must be within {_MOST_STEPS:g} timesteps of {timestep!r} s, got {times[-1]} s"
+        )
     if setting.integrator in MJBEER_INTEGRATORS:
         return times
     steps = np.rint(ratios)
     off = (np.abs(ratios - steps) > _ON_A_STEP * ratios) | (np.diff(steps, prepend=-1.0) == 0)
     if off.any():
         raise ParameterError(
-            f"MuJoCo's integrators have samples at different multiples of the timestep {timestep!r} s only, not at "
-            f'{times[off][0]} s; integrator="DOP853" has them anywhere'
+            "MuJoCo's integrators have samples at different multiples of the timestep "
+            f'{timestep!r} s only, not at {times[off][0]} s; integrator="DOP853" has them anywhere'
         )
     return steps * timestep
 
 
-def integrate(scene: Scene, phi0: float, phi_dot0: float, setting: Setting, times: np.ndarray) -> Run:
-    """Return the motion of a scene in a setting at increasing `times` [s]; it raises what `simulate` raises.
+def integrate(
+    scene: Scene, phi0: float, phi_dot0: float, setting: Setting, times: np.ndarray
+) -> Run:
+    """Return the motion of a scene in a setting at increasing `times` [s].
 
-    The model starts without the whole turns of `phi0`, as angles near 0 have more digits; the samples get them back.
+    It raises what `simulate` raises. The model starts without the whole turns of `phi0`, as angles
+    near 0 have more digits; the samples get them back.
     """
     near_phi0 = reduced(phi0)
-    checked = _check_times(setting, times)
+    checkpoints = _checkpoints(setting, times)
     with quiet():  # once: the steps and models inside then find it so
         stepped = kept_model(model_numbers(scene, setting))
         start = stepped.initial_state(near_phi0, phi_dot0)
-        solution = solve(stepped, setting, start, checked, rounding=turns_rounding(phi0))
-    motion = to_coordinates(stepped.model, scene, solution.states, checked)
+        solution = solve(stepped, setting, start, checkpoints, rounding=turns_rounding(phi0))
+    motion = to_coordinates(stepped.model, scene, solution.states, checkpoints)
     stepped.check(motion)
-    arrays = dict(vars(motion))
-    if checked is not times:
-        samples = np.searchsorted(checked, times)
-        arrays = {name: array[samples] for name, array in arrays.items()}
-    turns = phi0 - near_phi0
-    if turns != 0:
-        arrays["phi"] = arrays["phi"] + turns
-        if scene.attachment == "frozen":  # u = a phi, and the can turns with its load
-            arrays["u"] = arrays["u"] + scene.can.radius * turns
-            arrays["roll"] = arrays["roll"] + turns
     return Run(
-        **arrays,
+        **_samples(scene, motion, times, turns=phi0 - near_phi0),
         scene=scene,
         phi0=phi0,
         phi_dot0=phi_dot0,
@@ -164,15 +172,33 @@ def integrate(scene: Scene, phi0: float, phi_dot0: float, setting: Setting, time
     )
 
 
-def _check_times(setting: Setting, times: np.ndarray) -> np.ndarray:
-    """Return increasing times [s] at which a run is compared with another one: its samples, and more in between.
+def _samples(
+    scene: Scene, motion: Coordinates, times: np.ndarray, turns: float
+) -> dict[str, np.ndarray]:
+    """Return a motion at those of its times that are samples, by name, with `turns` [rad] added."""
+    arrays = dict(vars(motion))
+    if motion.time is not times:
+        samples = np.searchsorted(motion.time, times)
+        arrays = {name: array[samples] for name, array in arrays.items()}
+    if turns != 0:
+        arrays["phi"] = arrays["phi"] + turns
+        if scene.attachment == "frozen":  # u = a phi, and the can turns with its load
+            arrays["u"] = arrays["u"] + scene.can.radius * turns
+            arrays["roll"] = arrays["roll"] + turns
+    return arrays
 
-    With a fixed timestep they are up to `_CHECKPOINTS` steps; with a tolerance, the ends of `_PARTS` if samples are few.
+
+def _checkpoints(setting: Setting, times: np.ndarray) -> np.ndarray:
+    """Return increasing times [s] at which runs are compared: the samples, and more in between.
+
+    With a fixed timestep they are up to `_CHECKPOINTS` steps; with a tolerance, the ends of
+    `_PARTS` if samples are few.
     """
     last = times[-1]
     if setting.tolerance is None:
-        steps = max(1, int(last / setting.timestep))
-        more = setting.timestep * np.linspace(0, steps, min(steps, _CHECKPOINTS) + 1).astype(np.int64)
+        count = max(1, int(last / setting.timestep))
+        steps = np.linspace(0, count, min(count, _CHECKPOINTS) + 1).astype(np.int64)
+        more = setting.timestep * steps
     elif (times[1:] - times[:-1]).max(initial=times[0]) > last * _PARTS[1]:
         more = last * _PARTS
     else:

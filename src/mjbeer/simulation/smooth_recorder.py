@@ -1,7 +1,8 @@
 """The record of a smooth run, in compiled code: in a tenth of the time that `Recorder` takes.
 
-A smooth run is one of a reduced model without damping. It has many short steps, so that forces need to be looked for
-at their ends and in their middles only. It makes the record that `RecordMaker` makes, with the same formulas.
+A smooth run is one of a reduced model without damping. It has many short steps, so that forces need
+to be looked for at their ends and in their middles only. It makes the record that `RecordMaker`
+makes, with the same formulas.
 """
 
 import math
@@ -57,14 +58,14 @@ _PASSED = (
     "phi",  # [rad]
     "phi_dot",  # [rad/s]
     "drift",  # integral of the change of the swing's energy over the angle covered [J rad]
-    "checked",  # when forces were last looked at [s]
+    "forces_time",  # when forces were last looked at [s]
     "margin",  # force by which the can then neither left the incline nor slipped [N]
 )
-"""What has to be known of the steps so far to go on."""
+"""What the next step needs to know of those before it."""
 
 
 def _row_of(names: tuple[str, ...]) -> np.ndarray:
-    """Return a row of numbers with these names, all 0, which compiled code can change; shape (1,)."""
+    """Return a row of zeros with these names, which compiled code can change; shape (1,)."""
     return np.zeros(1, [(name, np.float64) for name in names])
 
 
@@ -105,7 +106,7 @@ class SmoothRecorder:
 
 @inlined
 def _coordinates(numbers, slides, state):
-    """Return u, phi and their rates in a state of a reduced model, whose can `slides` or follows phi."""
+    """Return u, phi and their rates in a state of a model whose can `slides` or follows phi."""
     if slides:
         return state[0], state[1], state[2], state[3]
     return numbers.radius * state[0], state[0], numbers.radius * state[1], state[1]
@@ -128,9 +129,10 @@ def _add_forces(numbers, friction, time, phi, phi_dot, passed, extremes):
     if friction < np.inf:
         margin = min(normal, friction * normal - pull)
     if margin < 0 and extremes.rolling_ends_at == np.inf:
-        share = passed.margin / (passed.margin - margin)  # of the line between two margins, above 0
-        extremes.rolling_ends_at = passed.checked + share * (time - passed.checked)
-    passed.checked = time
+        # The line between the last two margins is above 0 for a share of the time between them.
+        share = passed.margin / (passed.margin - margin)
+        extremes.rolling_ends_at = passed.forces_time + share * (time - passed.forces_time)
+    passed.forces_time = time
     passed.margin = margin
 
 
@@ -161,7 +163,8 @@ def _add_step(numbers, friction, slides, time, state, passed, extremes):
     # In the middle of the cubic that has the angles and the rates at both ends.
     middle_phi = (phi + passed.phi) / 2 + step * (passed.phi_dot - phi_dot) / 8
     middle_rate = 1.5 * (phi - passed.phi) / step - (phi_dot + passed.phi_dot) / 4
-    _add_forces(numbers, friction, passed.time + step / 2, middle_phi, middle_rate, passed, extremes)
+    middle_time = passed.time + step / 2
+    _add_forces(numbers, friction, middle_time, middle_phi, middle_rate, passed, extremes)
     _add_forces(numbers, friction, time, phi, phi_dot, passed, extremes)
 
     kinetic = formulas.kinetic_energy(numbers, phi, phi_dot, u_dot, u_dot / numbers.radius, 0.0)
@@ -188,7 +191,7 @@ def _add_step(numbers, friction, slides, time, state, passed, extremes):
 
 @kernel
 def _add(numbers, friction, slides, begun, times, states, passed_row, extremes_row):
-    """Add steps, the first of which is the start if nothing has `begun`, to what has passed and to the extremes."""
+    """Add steps to what has passed and to the extremes; the start is first if not yet `begun`."""
     passed = passed_row[0]
     extremes = extremes_row[0]
     first = 0

@@ -9,7 +9,12 @@ from mjbeer.exceptions import ToleranceError
 from mjbeer.model.joints import angle_sums, state_sizes
 from mjbeer.model.mujoco_library import MAX_STATE
 from mjbeer.model.setting import MJBEER_INTEGRATORS, Setting
-from mjbeer.simulation.methods import finer_dop853, finer_gauss_jackson, fixed_method, suits_gauss_jackson
+from mjbeer.simulation.methods import (
+    finer_dop853,
+    finer_gauss_jackson,
+    fixed_method,
+    suits_gauss_jackson,
+)
 from mjbeer.simulation.recorder import Recorder
 from mjbeer.simulation.stepped_model import SteppedModel
 from mjbeer.simulation.tolerance import SAFETY, Problem, Solution, not_reached, solve_to_tolerance
@@ -17,18 +22,17 @@ from mjbeer.theory.oscillator import Oscillator
 from mjbeer.theory.scene import Scene, relaxation_rate
 
 NUDGE = 4e-14
-"""Distance of the start of a nudged run, in sizes of the components of the state: a hundred times their rounding.
-
-Where J has a narrow minimum, it is the small difference of large numbers, and rounded accordingly: 1 + narrowness times
-as much, over a share of the angle that is 1/sqrt(1 + narrowness). The nudge is larger by the product of the two.
-"""
+"""Distance of the start of a nudged run: in sizes of the state's components, whose rounding is a
+hundredth of it."""
 SMALLEST = 1e-12
 """Smallest tolerance [rad]: below it the rounding of angles decides."""
 EVALUATIONS = 2_000_000
-"""Largest number of evaluations of the accelerations in all runs of a method, which take some seconds."""
-_STABLE = 6.4 / 12
-"""Longest step of DOP853 divided by the time in which damping brings can and load together, for each of its
-evaluations."""
+"""Largest number of evaluations of the accelerations in all runs of a method: some seconds."""
+_STABLE_STEP = 6.4
+"""Longest step with which DOP853 is stable, divided by the time in which damping brings can and
+load together."""
+_STEP_EVALUATIONS = 12
+"""Evaluations in a step of DOP853."""
 
 
 def solve(
@@ -40,34 +44,41 @@ def solve(
     friction: float = math.inf,
     rounding: float = 0.0,
 ) -> Solution:
-    """Return the motion from the state `start` at `times` [s], with the record for a coefficient of `friction`.
+    """Return the motion from the state `start` at `times` [s].
 
-    A tolerance has to leave room for the `rounding` [rad] of what is later added to the angles.
+    Its record says until when a can rolls with a coefficient of `friction`. A tolerance has to
+    leave room for the `rounding` [rad] of what is later added to the angles.
 
     Raises:
       DivergenceError: if the motion stops being finite, or the timestep is too long for the method.
       ToleranceError: if the tolerance is not reached; the message says how near the runs came.
     """
     if setting.tolerance is None:
-        recorder = Recorder(stepped.model, stepped.scene, friction, setting.integrator in MJBEER_INTEGRATORS)
+        recorder = Recorder(
+            stepped.model, stepped.scene, friction, setting.integrator in MJBEER_INTEGRATORS
+        )
         states = fixed_method(stepped, setting).run(start, times, recorder)
         return Solution(states, recorder.record, None, setting.integrator)
     if setting.tolerance < SMALLEST:
-        raise not_reached(setting.tolerance, f"less than {SMALLEST:g} rad is lost in the rounding of angles")
+        raise not_reached(
+            setting.tolerance, f"less than {SMALLEST:g} rad is lost in the rounding of angles"
+        )
     if setting.tolerance <= rounding:
         raise not_reached(
             setting.tolerance,
-            f"doubles near an angle as large as phi0 have errors of up to {rounding:.2g} rad; start fewer turns away",
+            f"doubles near an angle as large as phi0 have errors of up to {rounding:.2g} rad; "
+            "start fewer turns away",
         )
-    return _solve_to_tolerance(stepped, start, times, setting.tolerance - rounding, friction)
+    return _try_methods(stepped, start, times, setting.tolerance - rounding, friction)
 
 
-def _solve_to_tolerance(
+def _try_methods(
     stepped: SteppedModel, start: np.ndarray, times: np.ndarray, tolerance: float, friction: float
 ) -> Solution:
     """Return the motion with an error of phi and u/a below `tolerance` [rad].
 
-    Gauss-Jackson is tried first, if the motion is one for it, and then DOP853.
+    If the motion is smooth and undamped, Gauss-Jackson is tried. If it is not, or if that fails,
+    DOP853 follows.
     """
     from mjbeer.simulation.smooth_recorder import SmoothRecorder  # numba is slow to import
 
@@ -76,44 +87,62 @@ def _solve_to_tolerance(
     dynamics = stepped.dynamics
     _refuse_stiff(scene, times[-1], tolerance)
     scale = state_sizes(model, scene)
-    nudge = NUDGE * math.sqrt(1 + _narrowness(scene.oscillator))
-    nudged = start + nudge * scale * _along_energy(dynamics.derivative(start))
-    problem = Problem(start, nudged, times, tolerance, angle_sums(model, scene))
+    signs = _along_energy(dynamics.derivative(start))
+    problem = Problem(
+        start=start,
+        nudged_start=start + _nudge(scene.oscillator) * scale * signs,
+        times=times,
+        tolerance=tolerance,
+        angles=angle_sums(model, scene),
+    )
     if suits_gauss_jackson(scene, model):
         dynamics.most_evaluations = dynamics.evaluations + EVALUATIONS
         methods = finer_gauss_jackson(stepped, start, times[-1], tolerance / SAFETY)
         with suppress(ToleranceError):
-            return solve_to_tolerance(methods, problem, lambda: SmoothRecorder(model, scene, friction))
+            return solve_to_tolerance(
+                methods, problem, lambda: SmoothRecorder(model, scene, friction)
+            )
     dynamics.most_evaluations = dynamics.evaluations + EVALUATIONS
     methods = finer_dop853(stepped, tolerance, scale)
-    return solve_to_tolerance(methods, problem, lambda: Recorder(model, scene, friction, look_within_steps=True))
+    return solve_to_tolerance(
+        methods, problem, lambda: Recorder(model, scene, friction, look_within_steps=True)
+    )
 
 
-def _narrowness(swing: Oscillator) -> float:
-    """Return how narrow the minimum of J is: J = base (1 + narrowness phi^2) about phi = 0."""
-    return max(swing.coupling, swing.chord / 4) / swing.base
+def _nudge(swing: Oscillator) -> float:
+    """Return how far a nudged run starts aside, in sizes of the components of the state.
+
+    It is more than `NUDGE` where J has a narrow minimum, base (1 + narrowness phi^2) about 0. There
+    MuJoCo computes J as a small difference of large numbers, whose rounding is 1 + narrowness times
+    as large. But the load is there for a share of its way only, 1/sqrt(1 + narrowness). So the
+    nudge grows with sqrt(1 + narrowness).
+    """
+    narrowness = max(swing.coupling, swing.chord / 4) / swing.base
+    return NUDGE * math.sqrt(1 + narrowness)
 
 
 def _along_energy(rates: np.ndarray) -> np.ndarray:
-    """Return a sign for each component of a state, such that steps with these signs all raise the energy.
+    """Return a sign for each component of a state: moves with these signs all raise the energy.
 
-    `rates` are the time derivatives of the state: velocities, then accelerations. A move against an acceleration
-    raises V, and a larger velocity the kinetic energy.
+    `rates` are the time derivatives of the state: velocities, then accelerations. A move against an
+    acceleration raises V, and a larger velocity the kinetic energy.
     """
     half = len(rates) // 2
     return np.copysign(1.0, np.concatenate([-rates[half:], rates[:half]]))
 
 
 def _refuse_stiff(scene: Scene, duration: float, tolerance: float) -> None:
-    """Refuse a damping that brings can and load together so fast that DOP853 would need too many steps."""
+    """Refuse a damping so strong that DOP853 would need too many steps."""
     if not scene.damping_law:
         return
     # The weight of can and load, pulling at the rim, drives them apart at most at this rate.
     slip = min(scene.damping_law.rate_at(scene.mass * scene.gravity * scene.can.radius), MAX_STATE)
-    rate = float(relaxation_rate(scene, math.pi, slip))  # where J_f/J is largest
-    if rate * duration > _STABLE * EVALUATIONS:
+    rate = float(relaxation_rate(scene, math.pi, slip))  # at pi, where it is largest
+    most_steps = EVALUATIONS / _STEP_EVALUATIONS
+    if rate * duration > _STABLE_STEP * most_steps:
         raise not_reached(
             tolerance,
-            f"damping brings can and load together {rate:.2g} times a second, and steps as short as that would be too "
-            f'many over {duration:.6g} s; integrator="implicitfast" has longer ones, and a frozen load is the limit',
+            f"damping brings can and load together {rate:.2g} times a second, and steps as short "
+            f"as that would be too many over {duration:.6g} s; "
+            'integrator="implicitfast" has longer ones, and a frozen load is the limit',
         )

@@ -1,4 +1,7 @@
-"""A compiled model with the numbers of a scene, ready to be stepped; each thread keeps its own for the next scene."""
+"""A compiled model with the numbers of a scene, ready to be stepped.
+
+Each thread keeps its own for the next scene.
+"""
 
 import threading
 from functools import cached_property
@@ -62,7 +65,7 @@ class SteppedModel:
         return initial_state(self.model, self.scene, phi0, phi_dot0)
 
     def check(self, motion: Coordinates) -> None:
-        """Compare the MJCF with theory at the states of a run of this scene, unless it is mjbeer's own.
+        """Compare the MJCF with theory at the states of a run, unless it is mjbeer's own.
 
         Raises:
           TemplateError: if it does not move as theory says there.
@@ -82,7 +85,7 @@ _kept = _Kept()
 
 
 def kept_model(numbers: ModelNumbers) -> SteppedModel:
-    """Return this thread's model of that structure, with this scene's numbers written in and its data reset."""
+    """Return this thread's model of that structure, with these numbers and its data reset."""
     kept = _kept.models.get(numbers.structure)
     if kept is None:
         kept = _kept.models[numbers.structure] = SteppedModel(numbers)

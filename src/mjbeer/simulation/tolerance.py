@@ -1,15 +1,18 @@
 """Integration to a tolerance: finer and finer runs, until two of them come close enough.
 
-Every run has two kinds of error. That of its steps falls with their length, by a known power: of two runs the finer one
-has much less of it, and their distance is the error of the coarser one. `SAFETY` times the distance must be within the
-tolerance, although it is the finer run that is returned. Rounding does not fall. A run that starts a little aside
-shows how much the motion amplifies it: beside a separatrix, where a load hardly passes the top, a millionfold.
+Every run has two kinds of error. That of its steps falls with their length, by a known power: of
+two runs the finer one has much less of it, and their distance is the error of the coarser one.
+`SAFETY` times the distance must be within the tolerance, although it is the finer run that is
+returned. Rounding does not fall. A run that starts a little aside shows how much the motion
+amplifies it: beside a separatrix, where a load hardly passes the top, a millionfold.
 
-The first run, the coarsest, starts aside. Mostly the second one comes close enough to it even so, and nothing more has
-to be known. Otherwise a third run, as coarse as the first but with the right start, tells the two kinds apart.
+The first run, the coarsest, starts aside. Mostly the second one comes close enough to it even so:
+then both kinds of error are small enough, and two runs have done. Otherwise a third run, as coarse
+as the first but with the right start, tells the two kinds apart, and finer runs follow if that of
+the steps is too large.
 
-At order 13 and 8 a factor of 10 in the error costs 1.2 and 1.3 times the steps, so that one factor, generously chosen,
-replaces any finer judgement of whether two runs may agree by accident.
+At order 13 and 8 a factor of 10 in the error costs 1.2 and 1.3 times the steps, so that one factor,
+generously chosen, replaces any finer judgement of whether two runs may agree by accident.
 """
 
 import math
@@ -28,11 +31,12 @@ SAFETY = 10.0
 ROUNDING = 0.3
 """Estimated effect of all rounding divided by that of the nudge."""
 DRIFT = 1.5
-"""Error of phi divided by that which the drift of the swing's energy implies: 0.5 for rotations and small swings. For
-swings of 2.85 rad it is up to 2; there the distance of the runs is the larger estimate."""
+"""Error of phi divided by that which the drift of the swing's energy implies: 0.5 for rotations and
+small swings. For swings of 2.85 rad it is up to 2; there the distance of the runs is the larger
+estimate."""
 MOST_COMPARED = 64
-"""Samples at which two runs are compared, if there are more: to read one off takes as long as an evaluation. Runs with
-few samples are compared at half as many times."""
+"""Largest number of samples at which two runs are compared: to read one off takes as long as an
+evaluation."""
 
 
 class Solution(NamedTuple):
@@ -74,62 +78,100 @@ class Problem(NamedTuple):
     angles: np.ndarray
     """Whose product with a state is phi and u/a [rad], shape (nq + nv, 2)."""
 
+    def compared(self) -> slice:
+        """Return which samples are compared: at most `MOST_COMPARED`, the last one among them."""
+        stride = math.ceil(len(self.times) / MOST_COMPARED)
+        first = (len(self.times) - 1) % stride
+        return slice(first, None, stride)
+
+
+class _FullRun(NamedTuple):
+    """A run with all samples and the record of its steps."""
+
+    method: Method
+    states: np.ndarray
+    record: Record
+
+    def solution(self, error: float) -> Solution:
+        """Return the run as a solution with this error [rad]."""
+        return Solution(self.states, self.record, error, self.method.name)
+
 
 def solve_to_tolerance(
     methods: Iterable[Method], problem: Problem, make_recorder: Callable[[], RecordingObserver]
 ) -> Solution:
-    """Return the run of the first of these finer and finer `methods` that comes close enough to the one before it.
+    """Return the run of the first of these finer and finer `methods` that comes close enough.
+
+    It has to come close to the run of the method before it; there are two methods at least.
 
     Raises:
       ToleranceError: if none does, or if rounding alone may be more than the tolerance.
     """
     tolerance = problem.tolerance
-    stride = math.ceil(len(problem.times) / MOST_COMPARED)
-    compared = slice((len(problem.times) - 1) % stride, None, stride)  # with the last one
-    some_times = np.ascontiguousarray(problem.times[compared])
-    error = math.inf
+    compared = problem.compared()
+    compared_times = np.ascontiguousarray(problem.times[compared])
     finer_methods = iter(methods)
-    coarse_method = next(finer_methods)
+
+    def run(method: Method) -> _FullRun:
+        recorder = make_recorder()
+        states = method.run(problem.start, problem.times, recorder)
+        return _FullRun(method, states, recorder.record)
+
     try:
-        nudged = coarse_method.run(problem.nudged_start, some_times)
-        coarse = None
+        # Two runs, the coarser one with a nudged start.
+        first_method = next(finer_methods)
+        nudged = first_method.run(problem.nudged_start, compared_times)
+        fine = run(next(finer_methods))
+        error = estimate_error(problem, nudged, fine.states[compared], fine.record)
+        if error <= tolerance:
+            return fine.solution(error)
+
+        # A third run: is it their steps that part them, or rounding?
+        coarse = first_method.run(problem.start, compared_times)
+        error = estimate_error(problem, coarse, fine.states[compared], fine.record)
+        if error <= tolerance:
+            return fine.solution(max(error, estimate_rounding(problem, coarse, nudged)))
+
+        # Their steps: finer and finer runs.
         for method in finer_methods:
-            recorder = make_recorder()
-            states = method.run(problem.start, problem.times, recorder)
-            record = recorder.record
-            fine = states[compared]
-            if coarse is None:
-                error = estimate_error(problem, nudged, fine, record)
-                if error <= tolerance:
-                    return Solution(states, record, error, method.name)
-                coarse = coarse_method.run(problem.start, some_times)
-            error = estimate_error(problem, coarse, fine, record)
+            coarser = fine
+            coarse = coarser.states[compared]
+            fine = run(method)
+            error = estimate_error(problem, coarse, fine.states[compared], fine.record)
             if error <= tolerance:
-                if nudged is None:
-                    nudged = coarse_method.run(problem.nudged_start, some_times)
-                rounding = ROUNDING * largest_distance(problem, coarse, nudged)
-                if rounding > tolerance:
-                    raise not_reached(tolerance, f"the rounding of the start grows to {rounding:.2g} rad")
-                return Solution(states, record, max(error, rounding), method.name)
-            coarse_method = method
-            coarse = fine
-            nudged = None
+                nudged = coarser.method.run(problem.nudged_start, compared_times)
+                return fine.solution(max(error, estimate_rounding(problem, coarse, nudged)))
     except DivergenceError as failure:
         raise not_reached(tolerance, str(failure)) from failure
     raise not_reached(
         tolerance,
-        f"the error of the finest run is estimated at {error:.2g} rad: the motion is not smooth, or rounding decides",
+        f"the error of the finest run is estimated at {error:.2g} rad: "
+        "the motion is not smooth, or rounding decides",
     )
 
 
 def estimate_error(problem: Problem, coarse: np.ndarray, fine: np.ndarray, record: Record) -> float:
-    """Return the error of the finer of two runs [rad]: by their distance, and by what its `record` shows."""
-    apart = largest_distance(problem, coarse, fine)
-    return max(SAFETY * apart, DRIFT * record.swing_error, record.axis_error)
+    """Return the error of the finer of two runs [rad], by their distance and by its `record`."""
+    distance = largest_distance(problem, coarse, fine)
+    return max(SAFETY * distance, DRIFT * record.swing_error, record.axis_error)
+
+
+def estimate_rounding(problem: Problem, coarse: np.ndarray, nudged: np.ndarray) -> float:
+    """Return the effect of all rounding [rad], by the same run with a nudged start.
+
+    Raises:
+      ToleranceError: if it is more than the tolerance.
+    """
+    rounding = ROUNDING * largest_distance(problem, coarse, nudged)
+    if rounding > problem.tolerance:
+        raise not_reached(
+            problem.tolerance, f"the rounding of the start grows to {rounding:.2g} rad"
+        )
+    return rounding
 
 
 def largest_distance(problem: Problem, coarse: np.ndarray, fine: np.ndarray) -> float:
-    """Return the largest distance of two runs in phi or u/a [rad], relative to the angle turned beyond 1 rad."""
+    """Return the largest distance of two runs in phi or u/a [rad], relative beyond 1 rad turned."""
     angles = problem.angles
     return largest_angle_error(coarse @ angles, fine @ angles, problem.start @ angles)
 

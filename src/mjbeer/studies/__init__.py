@@ -1,1 +1,1 @@
-"""Studies of the models: validation, benchmark, stability. They share the files here, and none imports another."""
+"""Studies of the models, which share the files here; no study imports another."""

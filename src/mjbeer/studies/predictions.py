@@ -1,27 +1,31 @@
-"""Linear theory in advance: for which timesteps a small motion stays bounded, and for which accurate.
+"""Linear theory in advance: which timesteps keep a small motion bounded, and which accurate.
 
-**Integrators** turn linear equations q'' = -k q - b q' into x_{n+1} = G x_n for x = (q, h q'), with a matrix G of
-K = k h^2 and B = b h alone. A motion is bounded if no eigenvalue of G lies outside the unit circle. For a Runge-Kutta
-method G = R(h L), where R is the polynomial of its tableau and L the matrix of the equations as x' = L x (E. Hairer,
-G. Wanner, Solving Ordinary Differential Equations II, section IV.2). MuJoCo's "Euler", "implicit", "implicitfast" and
-"discrete" are the same semi-implicit Euler for forces like gravity.
+**Integrators** turn linear equations q'' = -k q - b q' into x_{n+1} = G x_n for x = (q, h q'), with
+a matrix G of K = k h^2 and B = b h alone. A motion is bounded if no eigenvalue of G lies outside
+the unit circle. For a Runge-Kutta method G = R(h L), where R is the polynomial of its tableau and L
+the matrix of the equations as x' = L x (E. Hairer, G. Wanner, Solving Ordinary Differential
+Equations II, section IV.2). MuJoCo's "Euler", "implicit", "implicitfast" and "discrete" are the
+same semi-implicit Euler for forces like gravity.
 
-**Soft constraints** have rows with a residual r, for instance u - a roll, and a reference acceleration -b r' - k r, of
-which a share s is reached: r'' = s (-b r' - k r) + (1 - s) a_free, where a_free is the acceleration without the
-constraint. With solref (tau, zeta) and a constant impedance d (solimp's dmin = dmax)
+**Soft constraints** have rows with a residual r, for instance u - a roll, and a reference
+acceleration -b r' - k r, of which a share s is reached: r'' = s (-b r' - k r) + (1 - s) a_free,
+where a_free is the acceleration without the constraint. With solref (tau, zeta) and a constant
+impedance d (solimp's dmin = dmax)
 
     b = 2/(d tau),   k = d/(d tau zeta)^2,
 
-so that a share s = d leaves b s = 2/tau and k s = 1/(tau zeta)^2: stability depends on h/tau and zeta alone. Where
-MuJoCo overestimates the row's diagonal, as it does by default, s < d, and the row is softer than its solref suggests.
+so that a share s = d leaves b s = 2/tau and k s = 1/(tau zeta)^2: stability depends on h/tau and
+zeta alone. Where MuJoCo overestimates the row's diagonal, as it does by default, s < d, and the row
+is softer than its solref suggests.
 
-**Damping** is what an integrator may treat implicitly: all but RK4 and DOP853 do, but "Euler" not that of a tendon,
-which damps the reduced model.
+**Damping** is what an integrator may treat implicitly: all but RK4 and DOP853 do, but "Euler" not
+that of a tendon, which damps the reduced model.
 """
 
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -31,30 +35,56 @@ from scipy.optimize import brentq
 
 from mjbeer.theory.scene import Scene
 
-RUNGE_KUTTA, IMPLICIT = ("RK4", "DOP853"), ("implicit", "implicitfast", "discrete")
-"""The integrators that are Runge-Kutta methods; MuJoCo's others are semi-implicit Euler. GaussJackson is a
-multistep method, and nothing here is about it. The implicit ones step with M + h D in place of M."""
+RUNGE_KUTTA = ("RK4", "DOP853")
+"""The integrators that are Runge-Kutta methods; MuJoCo's others are semi-implicit Euler.
+
+GaussJackson is a multistep method, and nothing here is about it.
+"""
+IMPLICIT = ("implicit", "implicitfast", "discrete")
+"""The integrators that step with M + h D in place of M."""
 PERIODS = 200
 """Number of periods over which a stable swing must stay bounded."""
 GROWTH = 100.0
-"""Largest factor by which a bounded swing may grow over `PERIODS`. Half a per cent below the limit of semi-implicit
-Euler a swing grows to 10 times its size, half a per cent above it to far more than this."""
+"""Largest factor by which a bounded swing may grow over `PERIODS`. Half a per cent below the limit
+of semi-implicit Euler a swing grows to 10 times its size, half a per cent above it to far more than
+this."""
 ACCURATE_PERIODS = 10
 """Number of periods over which an accurate swing must stay accurate."""
 ACCURACY = 1e-2
-"""Largest error of an accurate swing: a distance in the plane of (phi, phi_dot/omega), over the amplitude."""
+"""Largest error of an accurate swing: a distance in the plane of (phi, phi_dot/omega), over the
+amplitude."""
 MAX_IMPEDANCE = 0.9999
 """Impedance of the hardest row that MuJoCo accepts, mjMAXIMP."""
-_CLASSICAL = np.array([[0, 0, 0, 0], [1 / 2, 0, 0, 0], [0, 1 / 2, 0, 0], [0, 0, 1, 0]]), np.array([1, 2, 2, 1]) / 6
-_TABLEAUS = {"RK4": _CLASSICAL, "DOP853": (np.asarray(DOP853.A[:12, :12]), np.asarray(DOP853.B))}
+
+
+class _Tableau(NamedTuple):
+    """Of a Runge-Kutta method."""
+
+    stages: np.ndarray
+    """The matrix A."""
+    weights: np.ndarray
+    """The vector b."""
+
+
+_TABLEAUS = {
+    "RK4": _Tableau(
+        np.array([[0, 0, 0, 0], [1 / 2, 0, 0, 0], [0, 1 / 2, 0, 0], [0, 0, 1, 0]]),
+        np.array([1, 2, 2, 1]) / 6,
+    ),
+    "DOP853": _Tableau(np.asarray(DOP853.A[:12, :12]), np.asarray(DOP853.B)),
+}
 _RATIO = 1.02
 """Ratio of two successive values in the search for the first one that fails."""
 
 
 def polynomial(integrator: str) -> np.ndarray:
-    """Return the coefficients of R(z) = 1 + sum_j z^j b A^(j-1) 1 of a Runge-Kutta method, the constant first."""
+    """Return the coefficients of R(z) = 1 + sum_j z^j b A^(j-1) 1 of a Runge-Kutta method.
+
+    The constant comes first.
+    """
     stages, weights = _TABLEAUS[integrator]
-    powers, coefficients = np.ones(len(weights)), [1.0]
+    powers = np.ones(len(weights))
+    coefficients = [1.0]
     for _ in weights:
         coefficients.append(float(weights @ powers))
         powers = stages @ powers
@@ -62,13 +92,15 @@ def polynomial(integrator: str) -> np.ndarray:
 
 
 def amplification(integrator: str, stiffness: ArrayLike, damping: ArrayLike = 0.0) -> np.ndarray:
-    """Return the matrix G of one step of q'' = -k q - b q', with `stiffness` K = k h^2 and `damping` B = b h.
+    """Return the matrix G of one step of q'' = -k q - b q'.
 
-    K and B are numbers for one coordinate, or matrices of shape (n, n) for n coordinates; G has shape (2n, 2n).
-    Semi-implicit Euler, v += h a(q, v), q += h v, has G = ((1 - K, 1 - B), (-K, 1 - B)).
+    `stiffness` is K = k h^2 and `damping` is B = b h: numbers for one coordinate, or matrices of
+    shape (n, n) for n coordinates. G has shape (2n, 2n). Semi-implicit Euler, v += h a(q, v),
+    q += h v, has G = ((1 - K, 1 - B), (-K, 1 - B)).
     """
     k = np.atleast_2d(np.asarray(stiffness, dtype=float))
-    b, one = np.broadcast_to(np.asarray(damping, dtype=float), k.shape), np.eye(len(k))
+    b = np.broadcast_to(np.asarray(damping, dtype=float), k.shape)
+    one = np.eye(len(k))
     if integrator not in RUNGE_KUTTA:
         return np.block([[one - k, one - b], [-k, one - b]])
     rates = np.block([[np.zeros_like(k), one], [-k, -b]])
@@ -84,8 +116,12 @@ def spectral_radius(matrix: np.ndarray) -> float:
 
 
 def motion(matrix: np.ndarray, start: np.ndarray, steps: int) -> np.ndarray:
-    """Return the states G^n `start` for n = 0 to `steps`, shape (steps + 1, len(start)); not finite on overflow."""
-    states, power = np.array([start], dtype=float), np.array(matrix)
+    """Return the states G^n `start` for n = 0 to `steps`, shape (steps + 1, len(start)).
+
+    They are not finite after an overflow.
+    """
+    states = np.array([start], dtype=float)
+    power = np.array(matrix)
     with np.errstate(over="ignore", invalid="ignore"):
         while len(states) <= steps:
             states = np.concatenate([states, states @ power.T])
@@ -94,41 +130,54 @@ def motion(matrix: np.ndarray, start: np.ndarray, steps: int) -> np.ndarray:
 
 
 def error(integrator: str, swing: float) -> float:
-    """Return the largest error, as in `ACCURACY`, of a swing from rest with omega h = `swing` over `ACCURATE_PERIODS`.
+    """Return the largest error, as in `ACCURACY`, of a swing from rest over `ACCURATE_PERIODS`.
 
-    For small h it is omega h/2 under semi-implicit Euler, whose ellipse in the phase plane leans, and (omega h)^4/120 a
-    radian under RK4.
+    `swing` is omega h. For small h it is omega h/2 under semi-implicit Euler, whose ellipse in the
+    phase plane leans,
+    and (omega h)^4/120 a radian under RK4.
     """
     steps = math.floor(ACCURATE_PERIODS * 2 * math.pi / swing)
     states = motion(amplification(integrator, swing**2), np.array([1.0, 0.0]), steps)
     angles = swing * np.arange(steps + 1)
-    return float(np.hypot(states[:, 0] - np.cos(angles), states[:, 1] / swing + np.sin(angles)).max())
+    angle_errors = states[:, 0] - np.cos(angles)
+    rate_errors = states[:, 1] / swing + np.sin(angles)
+    return float(np.hypot(angle_errors, rate_errors).max())
 
 
 def stable_limit(integrator: str) -> float:
-    """Return the largest omega h with a bounded swing: 2 for semi-implicit Euler, 2 sqrt(2) for RK4, 5.97 for DOP853.
+    """Return the largest omega h with a bounded swing.
 
-    For RK4 it is 0.15 % more, as an instability needs time to grow.
+    It is 2 for semi-implicit Euler, 2 sqrt(2) for RK4, and 5.97 for DOP853; for RK4 0.15 % more, as
+    an instability needs time to grow.
     """
 
     def excess(swing: float) -> float:
         steps = PERIODS * 2 * math.pi / swing
-        return steps * math.log(spectral_radius(amplification(integrator, swing**2))) - math.log(GROWTH)
+        growth = spectral_radius(amplification(integrator, swing**2))  # in a step
+        return steps * math.log(growth) - math.log(GROWTH)
 
     return first(excess, 0.05, 20.0)
 
 
 def accurate_limit(integrator: str) -> float:
     """Return the largest omega h with an accurate swing."""
-    return first(lambda swing: error(integrator, swing) - ACCURACY, 5e-3, stable_limit(integrator))
+
+    def excess(swing: float) -> float:
+        return error(integrator, swing) - ACCURACY
+
+    return first(excess, 5e-3, stable_limit(integrator))
 
 
 def first(excess: Callable[[float], float], low: float, high: float) -> float:
-    """Return the smallest value above `low`, both positive, from which on `excess` is positive, or `high`."""
+    """Return the smallest value between two from which on `excess` is positive, or `high`."""
+
+    def sign(value: float) -> float:
+        return math.copysign(1, excess(value))
+
     while low < high:
         above = low * _RATIO
         if excess(above) > 0:
-            return float(brentq(lambda x: math.copysign(1, excess(x)), low, above, xtol=1e-9 * low, rtol=1e-12))
+            return float(brentq(sign, low, above, xtol=1e-9 * low, rtol=1e-12))
         low = above
     return high
 
@@ -136,7 +185,8 @@ def first(excess: Callable[[float], float], low: float, high: float) -> float:
 def reached_share(impedance: float, excess: float) -> float:
     """Return the share s of a row whose diagonal MuJoCo overestimates by a factor `excess`.
 
-    The regularizer R is (1 - d)/d times MuJoCo's diagonal; the share is A/(A + R) with the true diagonal A.
+    The regularizer R is (1 - d)/d times MuJoCo's diagonal; the share is A/(A + R) with the true
+    diagonal A.
     """
     return 1 / (1 + (1 - impedance) / impedance * excess)
 
@@ -155,14 +205,16 @@ class SoftRow:
     def at_end_of_step(self, timestep: float) -> "SoftRow":
         """Return the row that MuJoCo's "discrete" solves in place of this one.
 
-        Its reference acceleration is that of the residual at the end of the step: r' + h r'' and r + h r' + h^2 r''
-        in -b r' - k r. With S = 1 + h b + h^2 k that is -((b + h k) r' + k r)/S at the start of the step. The
-        softness (1 - d)/d is divided by S, but stays at least that of `MAX_IMPEDANCE`.
+        Its reference acceleration -b r' - k r is that of the residual at the end of the step, which
+        is r + h r' + h^2 r'' and has the rate r' + h r''. With S = 1 + h b + h^2 k that is
+        -((b + h k) r' + k r)/S at the start of the step. The softness (1 - d)/d is divided by S,
+        but stays at least that of `MAX_IMPEDANCE`.
         """
         h = timestep
         scale = 1 + h * self.damping + h**2 * self.stiffness
         impedance = min(reached_share(self.impedance, 1 / scale), MAX_IMPEDANCE)
-        return SoftRow(self.stiffness / scale, (self.damping + h * self.stiffness) / scale, impedance)
+        damping = (self.damping + h * self.stiffness) / scale
+        return SoftRow(self.stiffness / scale, damping, impedance)
 
 
 def spring(timeconst: float, dampratio: float, impedance: float) -> SoftRow:
@@ -178,9 +230,9 @@ def direct(stiffness: float, damping: float, impedance: float) -> SoftRow:
 
 @dataclass(frozen=True, eq=False)
 class SmallMotion:
-    """Linear equations of the joints of a model, M q'' + D q' + K q = 0, on level ground about phi = 0.
+    """Linear equations of the joints of a model, M q'' + D q' + K q = 0.
 
-    Where an equality ties the joints, D is 0.
+    They hold on level ground about phi = 0. Where an equality ties the joints, D is 0.
     """
 
     mass: np.ndarray
@@ -194,35 +246,52 @@ class SmallMotion:
 
     def exact(self, timestep: float) -> np.ndarray:
         """Return the matrix exp(h L) of (q, h q') over a `timestep` h [s], without the equality."""
-        none, one = np.zeros_like(self.mass), np.eye(len(self.mass))
-        stiffness, damping = (np.linalg.solve(self.mass, each) for each in (self.gravity, self.damping + none))
+        none = np.zeros_like(self.mass)
+        one = np.eye(len(self.mass))
+        stiffness = np.linalg.solve(self.mass, self.gravity)
+        damping = np.linalg.solve(self.mass, self.damping + none)
         return expm(np.block([[none, one], [-stiffness * timestep**2, -damping * timestep]]))
 
     def step(self, integrator: str, timestep: float, row: SoftRow | None = None) -> np.ndarray:
-        """Return the matrix of one step of (q, h q') with a `timestep` h [s]; the equality, if any, is `row`."""
+        """Return the matrix of one step of (q, h q') with a `timestep` h [s].
+
+        The equality, if there is one, is `row`.
+        """
         none = np.zeros_like(self.mass)
-        mass = self.mass + (timestep * self.damping if integrator in IMPLICIT else none)
-        stiffness, damping = (np.linalg.solve(mass, each) for each in (self.gravity, self.damping + none))
+        mass = self.mass + none
+        if integrator in IMPLICIT:
+            mass = self.mass + timestep * self.damping
+        stiffness = np.linalg.solve(mass, self.gravity)
+        damping = np.linalg.solve(mass, self.damping + none)
         if row is not None and self.jacobian is not None:
-            row = row.at_end_of_step(timestep) if integrator == "discrete" else row
+            if integrator == "discrete":
+                row = row.at_end_of_step(timestep)
             towards = np.linalg.solve(mass, self.jacobian)
             gain = towards / (self.jacobian @ towards) * reached_share(row.impedance, 1.0)
-            stiffness = stiffness + np.outer(gain, row.stiffness * self.jacobian - self.jacobian @ stiffness)
+            missing = row.stiffness * self.jacobian - self.jacobian @ stiffness
+            stiffness = stiffness + np.outer(gain, missing)
             damping = damping + np.outer(gain, row.damping * self.jacobian)
         return amplification(integrator, stiffness * timestep**2, damping * timestep)
 
 
 def small_motion(scene: Scene, constrained: bool = False) -> SmallMotion:
-    """Return the small motion of a scene on level ground: of a sliding load in u and phi, of a frozen one in phi.
+    """Return the small motion of a scene on level ground.
 
-    If `constrained`, a frozen one is in u and the can's roll, which the equality u = a roll ties.
+    That of a sliding load is in u and phi, that of a frozen one in phi. If `constrained`, that of a
+    frozen one is in u and the can's roll, which the equality u = a roll ties.
     """
-    moment, radius, inertia = scene.load.moment, scene.can.radius, scene.load.axis_inertia
+    moment = scene.load.moment
+    radius = scene.can.radius
+    inertia = scene.load.axis_inertia
     if scene.attachment == "frozen" and not constrained:
-        return SmallMotion(scene.oscillator.inertia(np.zeros((1, 1))), np.full((1, 1), moment * scene.gravity))
-    gravity, ahead = np.diag([0.0, moment * scene.gravity]), np.array([-1 / radius, 1.0])
+        mass = scene.oscillator.inertia(np.zeros((1, 1)))
+        gravity = np.full((1, 1), moment * scene.gravity)
+        return SmallMotion(mass, gravity)
+    gravity = np.diag([0.0, moment * scene.gravity])
     if constrained:
         mass = np.array([[scene.mass, -moment], [-moment, scene.can.inertia + inertia]])
         return SmallMotion(mass, gravity, jacobian=np.array([1.0, -radius]))
-    mass, law = np.array([[scene.effective_mass, -moment], [-moment, inertia]]), scene.damping_law
-    return SmallMotion(mass, gravity, law.linear * np.outer(ahead, ahead))
+    mass = np.array([[scene.effective_mass, -moment], [-moment, inertia]])
+    ahead = np.array([-1 / radius, 1.0])
+    damping = scene.damping_law.linear * np.outer(ahead, ahead)
+    return SmallMotion(mass, gravity, damping)

@@ -1,14 +1,11 @@
-"""A study: checks that are measured, kept on disk one by one, resumed after an interruption, and shown in tables."""
+"""A study: checks that are measured and kept on disk one by one, even if it is interrupted."""
 
 import json
 import os
 import pathlib
 import platform
 import re
-import warnings
-from collections.abc import Callable, Generator, Iterable, Sequence
-from concurrent.futures import as_completed
-from concurrent.futures.process import BrokenProcessPool
+from collections.abc import Generator, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
 from importlib.metadata import distributions
@@ -16,10 +13,11 @@ from typing import Any
 
 from rich.console import Console
 
+from mjbeer.checks.as_json import to_json
+from mjbeer.checks.check import Check, Result
 from mjbeer.exceptions import ParameterError
 from mjbeer.output import files
-from mjbeer.output.terminal import progress_bar
-from mjbeer.paper.checks import Check, Result, to_json
+from mjbeer.output.jobs import Job, finished_jobs
 
 FAILED = {True: "", False: " **FAIL**"}
 """Marks what did not pass in a table."""
@@ -47,7 +45,7 @@ class Study:
         try:
             head, *lines = path.read_text(encoding="utf-8").splitlines()
             study = cls(**json.loads(head))
-            study.results = [Result(**json.loads(each)) for each in lines]
+            study.results = [Result(**json.loads(line)) for line in lines]
             if study.command != command:
                 raise ValueError(f"it is of `{study.command}`")
         except (OSError, ValueError, TypeError) as error:
@@ -70,7 +68,10 @@ class Study:
 
     def save(self, path: pathlib.Path) -> None:
         """Write the study to a file, as lines of JSON: what it is of, and a line each result."""
-        files.write(path, "".join(map(to_json, [self.about, *(result.as_json() for result in self.results)])))
+        lines = [to_json(self.about)]
+        for result in self.results:
+            lines.append(to_json(result.as_json()))
+        files.write(path, "".join(lines))
 
 
 def run(
@@ -83,15 +84,15 @@ def run(
 ) -> Study:
     """Measure checks on all cores and return them as a study; `console` shows a progress bar.
 
-    Every result is in the file at `path` as soon as it is there, and the study that is in it is gone on with. So is
-    that in the file at `finished`, which stays as it is, if its settings and its machine are the same. Functions that
-    measure must be ones that can be pickled.
+    Every result is in the file at `path` as soon as it is there, and the study that is in it is
+    gone on with. So is that in the file at `finished`, which stays as it is, if its settings and
+    its machine are the same. Functions that measure must be ones that can be pickled.
 
     Raises:
       OSError: if the system ends one of the processes.
       OutputError: if the file cannot be written.
-      ParameterError: if a file is there, but is no study of this command, or the one at `path` is of other settings or
-        of another machine.
+      ParameterError: if a file is there, but is no study of this command, or the one at `path` is
+        of other settings or of another machine.
     """
     study = Study(command, settings, machine())
     for kept in (path, finished):
@@ -101,16 +102,19 @@ def run(
         if (stored.settings, stored.machine) == (study.settings, study.machine):
             study = stored
             if console is not None:
-                console.print(f"going on from {kept}", highlight=False, markup=False, soft_wrap=True)
+                console.print(
+                    f"going on from {kept}", highlight=False, markup=False, soft_wrap=True
+                )
             break
         if kept == path:
             raise ParameterError(
-                f"{path} has a study of other settings, or of another machine: remove it, or name another folder"
+                f"{path} has a study of other settings, or of another machine: "
+                "remove it, or name another folder"
             )
     study.save(path)
     done = {(result.group, result.name): result for result in study.results}
     missing = [check for check in checks if (check.group, check.name) not in done]
-    with progress_bar(console, len(missing)) as begin, closing(measured(missing, begin)) as results:
+    with closing(run_checks(missing, console)) as results:
         for result in results:
             done[result.group, result.name] = result
             study.results.append(result)
@@ -119,36 +123,25 @@ def run(
     return study
 
 
-def measured(checks: Sequence[Check], begin: Callable[[str], None]) -> Generator[Result]:
-    """Yield the results of checks as they are ready, from a process for each core; OSError if one is ended."""
-    if (processes := min(os.cpu_count() or 1, len(checks))) <= 1:
-        for check in checks:
-            begin(check.name)
-            yield check.result()
-        return
-    with files.pool(processes) as executor:
-        try:
-            for done in as_completed([executor.submit(_in_silence, check) for check in checks]):
-                result = done.result()
-                begin(result.name)
-                yield result
-        except BrokenProcessPool:
-            raise OSError("a process of the study was ended from outside: is memory short?") from None
+def run_checks(checks: Sequence[Check], console: Console | None) -> Generator[Result]:
+    """Yield the results of checks as they are ready, from a process for each core.
 
-
-def _in_silence(check: Check) -> Result:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        return check.result()
+    Raises:
+      OSError: if the system ends one of the processes.
+    """
+    jobs = [Job(check.name, check.result) for check in checks]
+    with closing(finished_jobs(jobs, console)) as finished:
+        for _, result in finished:
+            yield result
 
 
 def machine() -> dict[str, Any]:
     """Return what run times and rounding depend on: processor, system, and versions of packages."""
-    about = pathlib.Path("/proc/cpuinfo")
-    named = re.search(r"model name\s*: (.*)", about.read_text(encoding="utf-8")) if about.exists() else None
-    versions = {each.name: each.version for each in distributions() if each.name in _PACKAGES}
+    versions = {}
+    for distribution in distributions():
+        versions[distribution.name] = distribution.version
     return {
-        "processor": named[1] if named else platform.processor() or platform.machine(),
+        "processor": _processor(),
         "cores": os.cpu_count(),
         "system": platform.platform(terse=True),
         "python": platform.python_version(),
@@ -156,7 +149,11 @@ def machine() -> dict[str, Any]:
     }
 
 
-def document(about: dict[str, Any], name: str, rows: Iterable[dict[str, Any]]) -> str:
-    """Return as JSON what a study is about, and its rows under a name, a line each, with numbers of six digits."""
-    rounded = (json.loads(to_json(row), parse_float=lambda digits: float(f"{float(digits):.6g}")) for row in rows)
-    return json.dumps(about)[:-1] + f', "{name}": [\n' + ",\n".join(map(json.dumps, rounded)) + "\n]}\n"
+def _processor() -> str:
+    """Return the processor's name, as the system has it."""
+    about = pathlib.Path("/proc/cpuinfo")
+    if about.exists():
+        named = re.search(r"model name\s*: (.*)", about.read_text(encoding="utf-8"))
+        if named:
+            return named[1]
+    return platform.processor() or platform.machine()

@@ -23,7 +23,7 @@ from mjbeer.tracks.least_squares import (
 )
 from mjbeer.tracks.result import Fit
 from mjbeer.tracks.track import Track
-from mjbeer.tracks.track_model import TrackModel, with_parameters
+from mjbeer.tracks.track_model import TrackModel
 from mjbeer.tracks.unknowns import (
     FITTABLE,
     NAMES,
@@ -33,8 +33,6 @@ from mjbeer.tracks.unknowns import (
     to_values,
 )
 
-remade = with_parameters
-"""The name by which the checks of tracks still import it."""
 BEND = 5e-3
 """How far a lens usually bends the picture of a straight board [m]."""
 _FIRST_ROUNDS = 16

@@ -127,16 +127,16 @@ class Fit:
         The arguments and errors are those of `mjbeer.render`.
         """
         from mjbeer.drawing.film import MotionFilm
-        from mjbeer.drawing.overlay import Look
+        from mjbeer.drawing.style import FilmStyle
         from mjbeer.drawing.video import write
 
         time = self.track.time - self.values["released"]
         rest = self.track.along - self.model["along"]
         places = np.interp(time, self.run.time, self.run.u) + rest
-        look = Look(
+        style = FilmStyle(
             "A filmed can and the fitted motion",
             marks=("measured",),
             measured=np.stack([time, places], axis=1),
         )
-        film = MotionFilm(lambda: self.run, look, speed=speed)
+        film = MotionFilm(lambda: self.run, style, speed=speed)
         write(film.plan(), require.path(path), width, height, 30)

@@ -158,7 +158,7 @@ def measured_again(stored: Benchmark) -> list[Point]:
     """One quick point of every curve of a case whose error is that of the method, not of rounding."""
     found = {}
     for old in stored.points:
-        suitable = ABOVE_ROUNDING < old.error < 1e-2 and old.time < QUICK
+        suitable = ABOVE_ROUNDING < old.error < 1.0 and old.time < QUICK
         if suitable and old.method and old.parameter == TIMESTEP:
             found[old.case, old.curve] = old
     return list(found.values())

@@ -30,7 +30,7 @@ from mjbeer.studies.benchmark.points import (
     Curve,
     Point,
 )
-from mjbeer.studies.benchmark.timing import conduct, measure
+from mjbeer.studies.benchmark.timing import measure
 from mjbeer.theory.trajectory import exact
 
 pytestmark = pytest.mark.slow
@@ -62,7 +62,7 @@ def shorten(
 def measured() -> Benchmark:
     with pytest.MonkeyPatch.context() as monkeypatch:
         shorten(monkeypatch)
-        return conduct(["frozen"], False, None)
+        return timing.run(["frozen"], False, None)
 
 
 def points_on(study: Benchmark, *curve: str) -> list[Point]:
@@ -110,7 +110,7 @@ def test_what_is_written_is_read(measured: Benchmark, tmp_path: pathlib.Path) ->
 def test_a_setting_that_fails_is_a_point_with_a_reason(monkeypatch: pytest.MonkeyPatch) -> None:
     """A second is too long for a timestep, and the ladder goes on."""
     shorten(monkeypatch, {Curve("reduced", "DOP853"): (1.0, 8e-3)})
-    failed, other = conduct(["frozen"], False, None).points
+    failed, other = timing.run(["frozen"], False, None).points
     assert failed.failure is not None
     assert math.isinf(failed.error)
     assert not failed.times
@@ -169,11 +169,11 @@ def test_the_command_writes_everything(
 ) -> None:
     asked = []
 
-    def conduct_no_more(*arguments: Any) -> Benchmark:
+    def run_no_more(*arguments: Any) -> Benchmark:
         asked.append(arguments[:2])
         return measured
 
-    monkeypatch.setattr(timing, "conduct", conduct_no_more)
+    monkeypatch.setattr(timing, "run", run_no_more)
     folder = tmp_path / "new"
     assert main(["benchmark", "frozen", "--quick", "--output", str(folder)]) == 0
     assert asked == [(["frozen"], True)]
@@ -192,5 +192,5 @@ def test_the_summary_says_what_was_absent(
     shorten(monkeypatch, {Curve("reduced", "RK4"): (16e-3,)})
     monkeypatch.setattr(other_tools, "absent", lambda: {HEYOKA: reason})
     monkeypatch.setattr(work_precision, "draw", lambda *_: None)
-    benchmark_tables.write(conduct(["frozen"], True, None), tmp_path)
+    benchmark_tables.write(timing.run(["frozen"], True, None), tmp_path)
     assert f"\nheyoka is absent: {reason}\n" in (tmp_path / "summary.md").read_text()

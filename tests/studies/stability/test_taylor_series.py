@@ -1,4 +1,5 @@
-"""The reference against Lagrange's equations in extended precision, and against what a motion conserves."""
+"""The reference against Lagrange's equations in extended precision, and against what a motion
+conserves."""
 
 import numpy as np
 import pytest
@@ -31,8 +32,15 @@ CASES: dict[str, tuple[Scene, float, float, float, float]] = {
     # The spacing of doubles there is 1.8e-12.
     "1e4 rad away": (frozen(), 0.3, 1e4, 3.0, 1.8e-12),
     "1e5 rad/s": (sliding(can=METAL), 1e-4, 0.3, 1e5, FEW),
-    # A rounding of the start, 4e-16 rad, grows with the swing from there: as the angle itself, from 1e-6 to 3 rad.
-    "beside the separatrix": (pendulum(), 1.0, pendulum().separatrix()[1] - BESIDE, 0.0, 4e-16 * 3 / BESIDE),
+    # A rounding of the start, 4e-16 rad, grows with the swing from there: as the angle itself, from
+    # 1e-6 to 3 rad.
+    "beside the separatrix": (
+        pendulum(),
+        1.0,
+        pendulum().separatrix()[1] - BESIDE,
+        0.0,
+        4e-16 * 3 / BESIDE,
+    ),
     "weak gravity": (frozen(gravity=1e-3), 30.0, 1.0, 0.0, FEW),
 }
 
@@ -52,7 +60,10 @@ def test_energy_is_kept_over_a_hundred_swings() -> None:
     """Its rounding: that of twenty steps a swing, which add up like a random walk."""
     scene = sliding(incline=0.0, can=METAL)
     found = series(scene, np.linspace(0, 100 * scene.period(1.0), 1001), 1.0)
-    total, depth = kinetic_energy(scene, found) + potential_energy(scene, found), scene.oscillator.depth
+    total, depth = (
+        kinetic_energy(scene, found) + potential_energy(scene, found),
+        scene.oscillator.depth,
+    )
     assert np.abs(total - total[0]).max() / depth < 2e-14
 
 

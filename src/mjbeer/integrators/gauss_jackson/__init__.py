@@ -1,10 +1,11 @@
 """Gauss-Jackson, a multistep method for undamped motions, 5 to 10 times as fast as DOP853.
 
-Everything works without this folder, only slower: `method.py` says what a step does, and docs/gauss-jackson.md why.
+Everything works without this folder, only slower: `method.py` says what a step does, and
+docs/gauss-jackson.md why.
 
     law = SwingLaw(base, chord, coupling, ramp, depth, bottom, arm)
     first = first_timestep(law, phi0, phi_dot0, duration, tolerance)
-    time = sundman_time(law, law.inertia(phi0), precision=1e-3 * tolerance, largest_turn=first.largest_turn)
+    time = sundman_time(law, law.inertia(phi0), 1e-3 * tolerance, first.largest_turn)
     states = GaussJackson(dynamics, first.timestep, time).run(start, times)
 """
 

@@ -1,9 +1,10 @@
 """The first steps of Gauss-Jackson, and MuJoCo's accelerations in Sundman time, in compiled code.
 
-A multistep method needs accelerations before it can take a step: those of the six steps before the start, of the start
-and of the six steps after it. They are found by iteration. With any thirteen accelerations the formulas give places and
-rates at all thirteen steps, at which MuJoCo is asked for better accelerations. The law that phi nearly obeys costs next
-to nothing, and is iterated first.
+Before it can take a step, a multistep method needs accelerations: those of the six steps before the
+start, of the start itself, and of the six steps after it. They are found by iteration. With any
+thirteen accelerations the formulas give angles and rates at all thirteen steps, for which MuJoCo is
+asked for better accelerations. The law that phi nearly obeys is iterated first, as it costs next to
+nothing.
 """
 
 import math
@@ -11,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mjbeer.integrators.compiling import compiled, optimize_for_size
+from mjbeer.integrators.compiling import compiled, inlined, optimize_for_size
 from mjbeer.integrators.dynamics import accelerate
 from mjbeer.integrators.gauss_jackson.weights import (
     COUNT,
@@ -26,22 +27,27 @@ MIDDLE = COUNT // 2
 _ITERATIONS = 30
 """Largest number of iterations.
 
-At a timestep that is not too long the law takes six to twelve, after which MuJoCo changes no more than rounding."""
+At a timestep that is not too long the law takes six to twelve, after which MuJoCo changes no more
+than rounding."""
 _ROUNDING = 1e-16
-"""Largest change of an acceleration in an iteration, as a share of the largest one, that is rounding."""
+"""Largest change of an acceleration in an iteration, as a share of the largest one, that is
+rounding."""
 _SMALL_CHANGE = 1e-9
 """The same, below which iterations that do not improve any more have found the accelerations."""
+_NOT_ZERO = 1e-300
+"""Least size of the largest acceleration that a change is divided by."""
 _START = row_of(MIDDLE)
 _ALL = np.int64(COUNT)  # no plain number, as for `row_of`
 _OUTWARDS = np.argsort(np.abs(np.arange(COUNT) - MIDDLE), stable=True)
-"""The first steps in the order of an iteration: the start, then the step before it and the one after it..."""
+"""The first steps in the order of an iteration: the start, then the step before it and the one
+after it..."""
 
 
 def _since_start() -> tuple[np.ndarray, np.ndarray]:
-    """Return the weights that give velocity and position at each first step, counted from the start.
+    """Return the weights that give velocity and position at each first step, since the start.
 
-    These are the velocity less that at the start, and the position less its even motion from there. Each has shape
-    (COUNT, COUNT), with a row for each step, the first one first.
+    These are the velocity less that at the start, and the position less its even motion from there.
+    Each has shape (COUNT, COUNT), with a row for each step, the first one first.
     """
     # rows for back = COUNT - 1 down to 0
     velocities = VELOCITY_WEIGHTS[:0:-1]
@@ -56,7 +62,7 @@ _VELOCITIES_SINCE, _POSITIONS_SINCE = _since_start()
 
 
 class Accelerations(NamedTuple):
-    """What MuJoCo says of a state."""
+    """MuJoCo's accelerations in a state."""
 
     phi_second: float  # second derivative of phi in Sundman time [rad/s^2]
     steady: float  # of the slide less arm sin(phi), in time [m/s^2]
@@ -70,7 +76,7 @@ class History(NamedTuple):
 
 
 class FirstSums(NamedTuple):
-    """What the first steps have given besides their accelerations."""
+    """The two sums of accelerations with which a run begins, and how they were found."""
 
     found: bool  # whether the iteration has converged; if not, the sums say nothing
     evaluations: int
@@ -80,7 +86,7 @@ class FirstSums(NamedTuple):
 
 @compiled
 def evaluate(dynamics, sundman, phi, rate):
-    """Return MuJoCo's `Accelerations` where phi has a `rate` [rad/s] in Sundman time. The slide rests at its origin."""
+    """Return MuJoCo's `Accelerations` at a phi and its `rate` in Sundman time; the slide rests."""
     last = dynamics.qpos.size - 1
     sin = math.sin(sundman.multiple * phi)
     cos = math.cos(sundman.multiple * phi)
@@ -102,24 +108,27 @@ def evaluate(dynamics, sundman, phi, rate):
 
 @compiled
 def find_first_steps(dynamics, sundman, start, timestep, history):
-    """Write the accelerations of the first `COUNT` steps around the node `start` to `history`; return `FirstSums`."""
+    """Write the accelerations of the first steps around a node to `history`; return `FirstSums`."""
     optimize_for_size()
     evaluations = 0
     by_law = True
     found = False
     change_before = np.inf
     for _ in range(_ITERATIONS):
-        change = _improve(dynamics, sundman, start, timestep, history, by_law)
-        if not by_law:
+        if by_law:
+            change = _improve_by_law(sundman.law, start, timestep, history)
+        else:
+            change = _improve_by_mujoco(dynamics, sundman, start, timestep, history)
             evaluations += COUNT
         stalls = change_before <= change <= _SMALL_CHANGE
         if change <= _ROUNDING or stalls:
-            if not by_law:
+            if by_law:
+                by_law = False
+            else:
                 found = True
                 break
-            by_law = False
         change_before = change
-    # The two formulas of `weights` at the start, solved for the sums.
+    # These are the two formulas of `weights` at the start, solved for the sums.
     first_sum = start.rate / timestep - weighted(VELOCITY_WEIGHTS, _START, history.phi_second, _ALL)
     scaled_phi = start.phi / (timestep * timestep)
     from_history = weighted(POSITION_WEIGHTS, _START, history.phi_second, _ALL)
@@ -127,28 +136,48 @@ def find_first_steps(dynamics, sundman, start, timestep, history):
     return FirstSums(found, evaluations, first_sum, second_sum)
 
 
+@inlined
+def _phi_at(k, start, timestep, history):
+    """Return phi at the first step with index `k` [rad], by the accelerations so far."""
+    position_since = timestep * weighted(_POSITIONS_SINCE, k, history.phi_second, _ALL)
+    return start.phi + timestep * ((k - MIDDLE) * start.rate + position_since)
+
+
 @compiled
-def _improve(dynamics, sundman, start, timestep, history, by_law):
-    """Improve the first accelerations, by the law or by MuJoCo.
+def _improve_by_law(law, start, timestep, history):
+    """Replace the first accelerations by those of a `PendulumLaw` at the angles to which they lead.
 
     Return the largest change, divided by the largest of them.
     """
     optimize_for_size()
     change = 0.0
-    largest = 1e-300
+    largest = _NOT_ZERO
     for order in range(COUNT):
         k = _OUTWARDS[order]
-        position_since = timestep * weighted(_POSITIONS_SINCE, k, history.phi_second, _ALL)
-        phi = start.phi + timestep * ((k - MIDDLE) * start.rate + position_since)
-        if by_law:
-            law = sundman.law
-            acceleration = law.constant + law.cosine * math.cos(phi) + law.sine * math.sin(phi)
-        else:
-            rate = start.rate + timestep * weighted(_VELOCITIES_SINCE, k, history.phi_second, _ALL)
-            evaluated = evaluate(dynamics, sundman, phi, rate)
-            acceleration = evaluated.phi_second
-            history.steady[k] = evaluated.steady
+        phi = _phi_at(k, start, timestep, history)
+        acceleration = law.constant + law.cosine * math.cos(phi) + law.sine * math.sin(phi)
         change = max(change, abs(acceleration - history.phi_second[k]))
         largest = max(largest, abs(acceleration))
         history.phi_second[k] = acceleration
+    return change / largest
+
+
+@compiled
+def _improve_by_mujoco(dynamics, sundman, start, timestep, history):
+    """Replace the first accelerations by MuJoCo's in the states to which they lead.
+
+    Return the largest change, divided by the largest of them.
+    """
+    optimize_for_size()
+    change = 0.0
+    largest = _NOT_ZERO
+    for order in range(COUNT):
+        k = _OUTWARDS[order]
+        phi = _phi_at(k, start, timestep, history)
+        rate = start.rate + timestep * weighted(_VELOCITIES_SINCE, k, history.phi_second, _ALL)
+        evaluated = evaluate(dynamics, sundman, phi, rate)
+        change = max(change, abs(evaluated.phi_second - history.phi_second[k]))
+        largest = max(largest, abs(evaluated.phi_second))
+        history.phi_second[k] = evaluated.phi_second
+        history.steady[k] = evaluated.steady
     return change / largest

@@ -1,4 +1,4 @@
-"""The timestep of Gauss-Jackson that a tolerance should allow: the first guess, which need not be good."""
+"""The first guess of the timestep of Gauss-Jackson that a tolerance allows; it need not be good."""
 
 import math
 from typing import NamedTuple
@@ -6,19 +6,19 @@ from typing import NamedTuple
 from mjbeer.integrators.gauss_jackson.swing_law import SwingLaw
 
 _ORDER = 14
-"""Power of the timestep with which the error in a cycle is thought to grow.
+"""Power of the timestep with which the error of a cycle is assumed to grow.
 
-The method's order is 13. One more suits random motions as well, to 4% of the timestep from 1e-5 to 1e-11 rad, and gives
-tight tolerances slightly longer steps, over which less rounding adds up."""
+The method's order is 13. One more suits random motions as well, to 4% of the timestep from 1e-5 to
+1e-11 rad, and gives tight tolerances slightly longer steps, over which less rounding adds up."""
 _SHARE = 0.34
-"""The timestep, as a share of the distance of the nearest pole, at which the error in a cycle would reach 1 rad if it
-grew with this power all the way; fitted to random motions."""
+"""The timestep at which the error of a cycle would be 1 rad, if it grew with this power so far. It
+is a share of the distance of the nearest pole, fitted to random motions."""
 _LOOSEST = 1e-5
-"""Tolerance [rad] above which the timestep does not grow any more, as the method would become unstable."""
+"""Tolerance [rad] above which the timestep grows no more: the method would become unstable."""
 _FEWEST = 8
 """Least number of steps of a run."""
 _FEWEST_CYCLES = 0.5
-"""Least number of cycles over which an error is thought to grow: half a cycle at least, however short a run is."""
+"""Least number of cycles over which an error is assumed to grow, however short a run is."""
 _SMALLEST_SWING = 1e-3
 """Sine of half the amplitude below which a swing is as even as with this one."""
 
@@ -30,13 +30,16 @@ class FirstTimestep(NamedTuple):
     largest_turn: float  # angle by which phi turns in a timestep, at most [rad]
 
 
-def first_timestep(law: SwingLaw, phi0: float, phi_dot0: float, duration: float, tolerance: float) -> FirstTimestep:
+def first_timestep(
+    law: SwingLaw, phi0: float, phi_dot0: float, duration: float, tolerance: float
+) -> FirstTimestep:
     """Return a timestep for runs of some `duration` [s] that should err by a `tolerance` [rad].
 
-    The motion starts at `phi0` [rad] with the rate `phi_dot0` [rad/s], where Sundman time passes as fast as t. In that
-    time phi is a pendulum, and its motion an elliptic function. Its Taylor series converges as far as its nearest pole,
-    and this limits the steps of every method. Without a slope the pole lies at the imaginary time K'(k)/omega. Here
-    omega is the rate of small swings, and k^2 the largest kinetic energy divided by that which turns the load over.
+    The motion starts at `phi0` [rad] with the rate `phi_dot0` [rad/s], where Sundman time passes as
+    fast as t. In that time phi is a pendulum, and its motion an elliptic function. Its Taylor
+    series converges as far as its nearest pole, and this limits the steps of every method. Without
+    a slope the pole lies at the imaginary time K'(k)/omega. Here omega is the rate of small swings,
+    and k^2 the largest kinetic energy divided by that which turns the load over.
     """
     inertia = law.inertia(phi0)
     kinetic = _largest_kinetic_energy(law, phi0, phi_dot0, duration)
@@ -53,27 +56,30 @@ def first_timestep(law: SwingLaw, phi0: float, phi_dot0: float, duration: float,
 
 def _largest_kinetic_energy(law: SwingLaw, phi0: float, phi_dot0: float, duration: float) -> float:
     """Return the largest kinetic energy of a motion [J], or a little more."""
-    # V' = -ramp + depth sin(phi - bottom) vanishes at the rest and, half a turn and twice the lean on, at the crest.
+    # V' = -ramp + depth sin(phi - bottom) vanishes at the rest and at the crests. The rest lies a
+    # lean, asin(ramp/depth), beside the bottom; the crests lie half a turn from its mirror image.
     has_well = law.depth > abs(law.ramp)
     lean = math.asin(law.ramp / law.depth) if has_well else math.copysign(math.pi / 2, law.ramp)
-    middle_of_well = law.bottom - lean
-    middle_of_well += math.tau * round((phi0 - middle_of_well) / math.tau)  # in the turn of the start
-    rest = middle_of_well + 2 * lean
-    lower_crest = middle_of_well + math.copysign(math.pi, law.ramp)
+    mirror_image = law.bottom - lean
+    mirror_image += math.tau * round((phi0 - mirror_image) / math.tau)  # in the turn of the start
+    rest = mirror_image + 2 * lean
+    lower_crest = mirror_image + math.copysign(math.pi, law.ramp)
     energy = law.inertia(phi0) * phi_dot0**2 / 2 + law.potential(phi0)
     kinetic = max(0.0, energy - law.potential(rest))
     if has_well and energy <= law.potential(lower_crest):
         return kinetic
-    # It turns over and over. A turn takes 2 pi sqrt(J) / sqrt(2 E), and E grows by 2 pi |ramp| in it.
+    # It turns over and over. In each turn, which takes 2 pi sqrt(J) / sqrt(2 E), the energy E grows
+    # by 2 pi |ramp|: sqrt(2 E) grows by |ramp| / sqrt(J) a second.
     speed = math.sqrt(2 * (kinetic + 2 * law.depth))
     speed += abs(law.ramp) * duration / math.sqrt(law.mean_inertia())
     return speed**2 / 2
 
 
 def _complementary_integral(modulus: float) -> float:
-    """Return the complete elliptic integral K'(k), which is pi/2 divided by the arithmetic-geometric mean of 1 and k.
+    """Return the complete elliptic integral K'(k).
 
-    It is good to a thousandth: a first guess needs no more.
+    It is pi/2 divided by the arithmetic-geometric mean of 1 and k, and good to a thousandth: a
+    first guess needs no more.
     """
     arithmetic = 1.0
     geometric = modulus

@@ -1,7 +1,8 @@
-"""The state at the end of a step of Gauss-Jackson, the time that passes in the step, and the states within it.
+"""A step of Gauss-Jackson: the state at its end, the time that it takes, and the states within it.
 
-In a step phi is a polynomial of s: the one by which the method itself adds up accelerations. What passes of t is the
-integral of dt/ds, by Gauss's formula, without an evaluation of the dynamics. All of it is compiled code.
+In a step phi is a polynomial of s: the one by which the method itself adds up accelerations. What
+passes of t is the integral of dt/ds, by Gauss's formula, without an evaluation of the dynamics. All
+of it is compiled code.
 """
 
 import math
@@ -24,8 +25,8 @@ from mjbeer.integrators.gauss_jackson.weights import (
 _ATTEMPTS = 5
 """Largest number of improvements of `s_share`, the place of a sample in its step."""
 _PUNCTUAL = 3e-5
-"""Distance of a sample from its time, as a share of the step's duration, after which one more improvement leaves
-nothing but rounding: it cubes the distance."""
+"""Distance of a sample from its time, as a share of the step's duration, after which one more
+improvement leaves nothing but rounding: it cubes the distance."""
 
 
 class Node(NamedTuple):
@@ -37,18 +38,22 @@ class Node(NamedTuple):
 
 
 class WholeStep(NamedTuple):
-    """What a step has led to."""
+    """A step between two nodes."""
 
-    before: Node  # at its start
-    after: Node  # at its end
+    before: Node
+    after: Node
     duration: float  # [s]
+    end_time: float  # and a little more: up to this time samples are in the step [s]
     steady: float  # mean acceleration of the slide less arm sin(phi) [m/s^2]
 
 
 class StepCurve(NamedTuple):
-    """phi in a step, by the formulas of `weights`: both sums, and a polynomial of the last accelerations."""
+    """phi in a step, by the formulas of `weights`: both sums, and what the last accelerations add.
 
-    coefficients: np.ndarray  # of the polynomial, the highest power first, shape (COUNT + 2,)
+    What they add is a polynomial of `back` - `CENTRE`, whose coefficients `fit` writes.
+    """
+
+    coefficients: np.ndarray  # the highest power first, shape (COUNT + 2,)
     first_sum: float
     second_sum: float
     timestep: float  # in Sundman time [s]
@@ -56,14 +61,23 @@ class StepCurve(NamedTuple):
 
 
 @inlined
+def _phi(curve, ahead, added):
+    """Return phi [rad] where the last accelerations have `added` so much to the sums.
+
+    The step after the last acceleration is so many steps `ahead`, which is 1 + back.
+    """
+    scaled_phi = curve.second_sum - ahead * curve.first_sum + added
+    return curve.timestep * curve.timestep * scaled_phi
+
+
+@inlined
 def end_node(sundman, curve, accelerations, end):
     """Return the node at the end of the step, by the accelerations before index `end`."""
-    row = curve.back  # that of one step less back, as `row_of` says
-    scaled_phi = curve.second_sum - curve.back * curve.first_sum  # phi/h^2
-    scaled_phi += weighted(POSITION_WEIGHTS, row, accelerations, end)
-    rate = curve.first_sum + weighted(VELOCITY_WEIGHTS, row, accelerations, end)
-    phi = curve.timestep * curve.timestep * scaled_phi
-    return Node(phi, curve.timestep * rate, dt_ds(sundman, phi))
+    ahead = curve.back  # one less than at the start of the step
+    row = ahead  # of the weights there, as `row_of` says
+    phi = _phi(curve, float(ahead), weighted(POSITION_WEIGHTS, row, accelerations, end))
+    scaled_rate = curve.first_sum + weighted(VELOCITY_WEIGHTS, row, accelerations, end)
+    return Node(phi, curve.timestep * scaled_rate, dt_ds(sundman, phi))
 
 
 @inlined
@@ -73,9 +87,10 @@ def whole_duration(sundman, curve, accelerations, end):
     first_row = (curve.back - 1 - LAG) * count
     mean = 0.0
     for point in range(count):
-        scaled_phi = curve.second_sum - (1 + curve.back - sundman.points[point]) * curve.first_sum
-        scaled_phi += weighted(sundman.places, first_row + point, accelerations, end)
-        mean += sundman.weights[point] * dt_ds(sundman, curve.timestep * curve.timestep * scaled_phi)
+        ahead = 1 + curve.back - sundman.points[point]
+        row = first_row + point
+        phi = _phi(curve, ahead, weighted(sundman.position_weights, row, accelerations, end))
+        mean += sundman.weights[point] * dt_ds(sundman, phi)
     return curve.timestep * mean
 
 
@@ -92,7 +107,7 @@ def fit(curve, accelerations, end):
 
 @inlined
 def node_at(sundman, curve, s_share):
-    """Return the node after a share of the step in s, between 0 and 1, if the curve is fitted."""
+    """Return the node after a share of the step in s, between 0 and 1; the curve is fitted."""
     back = curve.back - s_share
     x = back - CENTRE
     value = 0.0
@@ -100,14 +115,14 @@ def node_at(sundman, curve, s_share):
     for k in range(COUNT + 2):
         slope = slope * x + value
         value = value * x + curve.coefficients[k]
-    phi = curve.timestep * curve.timestep * (curve.second_sum - (1 + back) * curve.first_sum + value)
+    phi = _phi(curve, 1 + back, value)
     rate = curve.timestep * (curve.first_sum - slope)  # `back` counts against time
     return Node(phi, rate, dt_ds(sundman, phi))
 
 
 @inlined
 def duration(sundman, curve, s_share):
-    """Return the time [s] that passes in the first share of the step in s, if the curve is fitted."""
+    """Return the time [s] that passes in a first share of the step in s; the curve is fitted."""
     mean = 0.0
     for point in range(sundman.points.size):
         back = curve.back - s_share * sundman.points[point]
@@ -115,16 +130,15 @@ def duration(sundman, curve, s_share):
         value = 0.0
         for k in range(COUNT + 2):
             value = value * x + curve.coefficients[k]
-        scaled_phi = curve.second_sum - (1 + back) * curve.first_sum + value
-        mean += sundman.weights[point] * dt_ds(sundman, curve.timestep * curve.timestep * scaled_phi)
+        mean += sundman.weights[point] * dt_ds(sundman, _phi(curve, 1 + back, value))
     return curve.timestep * s_share * mean
 
 
 @compiled
 def find(sundman, curve, step, since):
-    """Return the node `since` [s] after the start of a `WholeStep`, if the curve is fitted."""
+    """Return the node `since` [s] after the start of a `WholeStep`; the curve is fitted."""
     optimize_for_size()
-    # First the cubic in t that has the right value and slope, ds/dt, at both ends of the step.
+    # The first guess is a cubic in t: it has the right value and slope, ds/dt, at both ends.
     t_share = since / step.duration
     first_slope = step.duration / (curve.timestep * step.before.dt_ds)
     last_slope = step.duration / (curve.timestep * step.after.dt_ds)
@@ -134,10 +148,10 @@ def find(sundman, curve, step, since):
     for _ in range(_ATTEMPTS):
         node = node_at(sundman, curve, s_share)
         time_left = since - duration(sundman, curve, s_share)
-        # Newton's step in s, and a second term for the `growth` of dt/ds, its derivative in s divided by itself.
+        ahead = time_left / node.dt_ds  # Newton's step in s
+        # Its second term has the growth of dt/ds: the derivative in s, divided by dt/ds.
         growth = sundman.varying * sundman.multiple * math.sin(2 * sundman.multiple * node.phi)
         growth *= node.rate / (2 * node.dt_ds * node.dt_ds)
-        ahead = time_left / node.dt_ds
         s_share += ahead * (1 - growth * ahead / 2) / curve.timestep
         if abs(time_left) <= _PUNCTUAL * step.duration:
             break

@@ -1,12 +1,13 @@
 """The Sundman time s, in which the steps of Gauss-Jackson are even.
 
-A light wheel passes its lowest point in a hundredth of its swing, and steps that are even in t would all have to be as
-short as that passage needs. The (generalized) Sundman transformation
+A light wheel passes its lowest point in a hundredth of its swing, and steps that are even in t
+would all have to be as short as that passage needs. The (generalized) Sundman transformation
 
     dt/ds = sqrt(J(phi)/unit)
 
-makes the passage as long as the rest of the swing. It also takes J out of the law: with phi' = dphi/ds,
-J phi_dot^2 = unit phi'^2, so that unit phi'' = -V'(phi), a pendulum with a constant inertia.
+makes the passage as long as the rest of the swing. It also takes J out of the law: with phi' =
+dphi/ds, J phi_dot^2 = unit phi'^2, so that unit phi'' = -V'(phi), a pendulum with a constant
+inertia.
 """
 
 import functools
@@ -23,11 +24,11 @@ from mjbeer.integrators.gauss_jackson.weights import CENTRE, COUNT, LAG, POSITIO
 LARGEST_TURN = 4.0
 """The largest angle by which phi may turn in a step [rad]."""
 _MOST_POINTS = 100
-"""Largest number of points at which dt/ds is looked at in a step: so many are needed where a wheel has a thousandth of
-its load's mass."""
+"""Largest number of points at which dt/ds is looked at in a step: so many are needed where a wheel
+has a thousandth of its load's mass."""
 _LARGEST_ELLIPSE = 20.0
-"""Largest ellipse that `_points_for` assumes: a larger one would give too few points, as phi is not linear in s
-within a step."""
+"""Largest ellipse that `_points_for` assumes: a larger one would give too few points, as phi is not
+linear in s within a step."""
 
 
 class PendulumLaw(NamedTuple):
@@ -41,8 +42,8 @@ class PendulumLaw(NamedTuple):
 class SundmanTime(NamedTuple):
     """A time s with dt/ds = sqrt(constant + varying sin^2(multiple phi)), which must be positive.
 
-    Whatever dt/ds and `law` are, the motion is the same, as its accelerations are MuJoCo's; the nearer they come to the
-    motion's own, the longer the steps may be.
+    Whatever dt/ds and `law` are, the motion is the same, as its accelerations are MuJoCo's; the
+    nearer they come to the motion's own, the longer the steps may be.
     """
 
     constant: float
@@ -52,15 +53,16 @@ class SundmanTime(NamedTuple):
     arm: float  # the slide less arm sin(phi) is evenly accelerated [m]
     points: np.ndarray  # of Gauss's formula in a step, between 0 and 1
     weights: np.ndarray  # of these points, whose sum is 1
-    places: np.ndarray  # weights of accelerations in the positions at these points, see `_places`
+    position_weights: np.ndarray  # of the accelerations, for phi at these points
 
 
 def sundman_time(
     law: SwingLaw, unit: float, precision: float = 1e-15, largest_turn: float = LARGEST_TURN
 ) -> SundmanTime:
-    """Return the Sundman time of a law, in which a load with the inertia `unit` [kg m^2] has dt/ds = 1.
+    """Return the Sundman time of a law, with dt/ds = 1 where J is the `unit` [kg m^2].
 
-    The duration of a step in which phi turns by `largest_turn` [rad] is known to some `precision`, a share of it.
+    The duration of a step in which phi turns by `largest_turn` [rad] is known to some `precision`,
+    a share of it.
     """
     constant = law.base / unit
     varying = law.chord / unit
@@ -82,22 +84,24 @@ def sundman_time(
         arm=law.arm,
         points=points,
         weights=weights,
-        places=_places(count),
+        position_weights=_position_weights(count),
     )
 
 
-def _points_for(constant: float, varying: float, multiple: float, precision: float, largest_turn: float) -> int:
+def _points_for(
+    constant: float, varying: float, multiple: float, precision: float, largest_turn: float
+) -> int:
     """Return the number of points with which Gauss's formula gives a duration to some precision.
 
-    Its error falls by the square of an ellipse's size with each point. The foci of the ellipse are the ends of the
-    step, and the complex angle at which dt/ds vanishes lies on it. Its size is the sum of its half-axes, divided by
-    half the distance of its foci.
+    With each point its error falls by the square of an ellipse's size. The foci of this ellipse in
+    the complex plane are the ends of the step, and it passes through the angle at which dt/ds
+    vanishes. Its size is the sum of its half-axes, divided by half the distance of its foci.
     """
-    size = math.log(_LARGEST_ELLIPSE)
+    logarithm = math.log(_LARGEST_ELLIPSE)  # of the size
     if varying > 0 and largest_turn > 0:
-        zero = math.asinh(math.sqrt(constant / varying)) / multiple
-        size = min(size, math.asinh(2 * zero / largest_turn))
-    return min(_MOST_POINTS, math.ceil(-math.log(precision) / (2 * size)))
+        zero = math.asinh(math.sqrt(constant / varying)) / multiple  # the imaginary angle
+        logarithm = min(logarithm, math.asinh(2 * zero / largest_turn))
+    return min(_MOST_POINTS, math.ceil(-math.log(precision) / (2 * logarithm)))
 
 
 @functools.cache
@@ -108,18 +112,19 @@ def _gauss(count: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 @functools.cache
-def _places(count: int) -> np.ndarray:
-    """Return the weights of positions at so many points of a step, one in a row.
+def _position_weights(count: int) -> np.ndarray:
+    """Return the weights of accelerations for phi at points of a step, a row for each point.
 
-    First come the points of the step that ends `LAG` steps before the last acceleration, then those of the steps before
-    it, back to the start of a run, when the last acceleration is the last of the first steps.
+    The first rows are those of a step that ends `LAG` steps before the last acceleration, as most
+    steps of a run do. The next rows are those of a step that ends one step earlier, and so on, as
+    the steps at the beginning of a run do.
     """
     points, _ = _gauss(count)
-    ends = np.arange(LAG, COUNT // 2)
+    ends = np.arange(LAG, COUNT // 2)  # steps before the last acceleration
     back = (ends[:, None] + 1 - points).ravel()
-    places = np.vander(back - CENTRE, COUNT + 2) @ POSITION_POLYNOMIALS.T
-    places.flags.writeable = False  # like all weights, or `weighted` would be compiled once more
-    return places
+    weights = np.vander(back - CENTRE, COUNT + 2) @ POSITION_POLYNOMIALS.T
+    weights.flags.writeable = False  # like all weights, or `weighted` would be compiled once more
+    return weights
 
 
 @inlined

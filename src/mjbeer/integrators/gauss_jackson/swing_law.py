@@ -8,15 +8,17 @@ from typing import NamedTuple
 
 
 class SwingLaw(NamedTuple):
-    """The law that phi nearly obeys: an oscillator whose inertia J depends on phi, in a potential V.
+    """The law that phi nearly obeys: an oscillator with an inertia J(phi) and a potential V(phi).
 
         J phi_dot^2 / 2 + V = E,
         J = base + chord sin^2(phi/2) + coupling sin^2(phi),
         V = -ramp phi - depth cos(phi - bottom).
 
-    One of `chord` and `coupling` is 0. If the model has a slide, the slide less arm sin(phi) is evenly accelerated.
+    One of `chord` and `coupling` is 0. If the model has a slide, the slide less arm sin(phi) is
+    evenly accelerated.
 
-    J and V are those of `theory.formulas`, written again here because the integrators import no theory.
+    J and V are those of `theory.formulas`, written again here because the integrators import no
+    theory.
     """
 
     base: float  # [kg m^2]

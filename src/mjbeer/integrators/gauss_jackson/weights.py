@@ -1,10 +1,11 @@
 """The weights with which Gauss-Jackson adds up accelerations, by rational arithmetic.
 
-Let z be the backward difference, z a_n = a_n - a_(n-1), and h the step. By Taylor's theorem the time derivative is then
--ln(1 - z)/h. So the velocity is h/(-ln(1 - z)), and the position h^2/ln(1 - z)^2, times the acceleration. As series in
-z they begin with 1/z and 1/z^2, which are the first and the second sum of all accelerations; the other terms are
-differences of the last accelerations, and so weights for these. A factor (1 - z)^back gives the value that many steps
-before the last acceleration; a `back` of -1 predicts the next step.
+Let z be the backward difference, z a_n = a_n - a_(n-1), and h the step. By Taylor's theorem the
+time derivative is then -ln(1 - z)/h. So the velocity is h/(-ln(1 - z)), and the position h^2/ln(1 -
+z)^2, times the acceleration. As series in z they begin with 1/z and 1/z^2, which are the first and
+the second sum of all accelerations; the other terms are differences of the last accelerations, and
+so weights for these. A factor (1 - z)^back gives the value that many steps before the last
+acceleration; a `back` of -1 predicts the next step.
 
 In units of the step, with both sums up to the last acceleration, and the weights of that `back`,
 
@@ -39,7 +40,8 @@ POSITION = 2
 def weights_at(power: int, back: int) -> np.ndarray:
     """Return the weights of the last `COUNT` accelerations, the oldest first, shape (COUNT,).
 
-    They give what the `power` says, `VELOCITY` or `POSITION`, `back` steps before the last acceleration.
+    They give what the `power` says, `VELOCITY` or `POSITION`, `back` steps before the last
+    acceleration.
     """
     shift = [Fraction(1)]  # the series of (1 - z)^back
     for k in range(1, COUNT + power):
@@ -49,9 +51,9 @@ def weights_at(power: int, back: int) -> np.ndarray:
 
 
 def position_polynomials() -> np.ndarray:
-    """Return the weights of positions as polynomials of `back` - `CENTRE`, shape (COUNT, COUNT + 2).
+    """Return the weights of positions as polynomials of `back` - `CENTRE`.
 
-    The highest power is first.
+    The shape is (COUNT, COUNT + 2), with the highest power first.
     """
     back = Polynomial([CENTRE, 1.0])
     shift = [Polynomial([1.0])]
@@ -81,9 +83,9 @@ def _product(first: Sequence[Any], second: Sequence[Any]) -> list[Any]:
 
 
 def _of_ordinates(differences: Sequence[Any]) -> list[Any]:
-    """Return the weights of accelerations, the oldest first, from those of their differences, z^0 first.
+    """Return the weights of accelerations, the oldest first, from those of differences.
 
-    z^j a_n is the sum over k of (-1)^k binomial(j, k) a_(n-k).
+    The difference z^0 comes first. z^j a_n is the sum over k of (-1)^k binomial(j, k) a_(n-k).
     """
     ordinates = []
     for k in range(COUNT):
@@ -98,7 +100,8 @@ def _rows(power: int) -> np.ndarray:
 
 
 VELOCITY_WEIGHTS = _rows(VELOCITY)
-"""Weights of velocities, shape (COUNT + 1, COUNT); `row_of` says in which row those of a `back` are."""
+"""Weights of velocities, shape (COUNT + 1, COUNT); `row_of` says in which row those of a `back`
+are."""
 POSITION_WEIGHTS = _rows(POSITION)
 """Weights of positions, in the same rows."""
 POSITION_POLYNOMIALS = position_polynomials()
@@ -106,16 +109,16 @@ POSITION_POLYNOMIALS = position_polynomials()
 
 
 def row_of(back: int) -> np.int64:
-    """Return the row of these weights. numba would compile `weighted` once more for each plain number."""
+    """Return the row of these weights; a plain number would have `weighted` compiled again."""
     return np.int64(back + 1)
 
 
 @inlined
 def weighted(weights, row, accelerations, end):
-    """Return the sum of the `COUNT` accelerations before index `end`, with a row of weights, in four sums that overlap.
+    """Return the sum of `COUNT` accelerations before index `end`, with a row of weights.
 
-    The order of the additions is fixed: left to the compiler, code loaded from the cache could round differently from
-    code just compiled.
+    It is the sum of four sums that overlap. The order of additions is fixed: left to the compiler,
+    code loaded from the cache could round differently from code just compiled.
     """
     first = weights[row, COUNT - 1] * accelerations[end - 1]
     second = 0.0

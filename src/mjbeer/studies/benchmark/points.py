@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from mjbeer.checks.as_json import document
 from mjbeer.model.setting import Rolling
-from mjbeer.studies.study import document
 from mjbeer.theory.can import Can
 from mjbeer.theory.scene import Scene, frozen, pendulum, sliding
 from mjbeer.theory.trajectory import Trajectory, exact

@@ -40,7 +40,7 @@ _BRIEF = 0.01
 the mercy of the system. Its time in a round is the median."""
 
 
-def conduct(names: Sequence[str], quick: bool, console: Console | None) -> Benchmark:
+def run(names: Sequence[str], quick: bool, console: Console | None) -> Benchmark:
     """Measure the cases of some names: first all errors, then all times, in rounds.
 
     A setting that fails is a point with the reason. A tool that cannot be imported takes no part;

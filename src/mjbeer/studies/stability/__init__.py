@@ -1,1 +1,1 @@
-"""`mjbeer stability` simulates stiff and extreme scenes, and measures up to which timestep motions stay stable."""
+"""`mjbeer stability`: stiff and extreme scenes, and the longest timesteps that are stable."""

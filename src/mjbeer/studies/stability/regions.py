@@ -1,14 +1,14 @@
-"""Regions of random trials, as rows of data: what one has on a desk, and what nobody has.
+"""Regions of random trials: what one has on a desk, and what nobody has.
 
-A quantity is a number, a pair (low, high) between which its logarithm is even, an `Even` range, or a list of which one
-is taken. Each region takes one thing or all to its extremes, some beyond the domain. A trial depends on its number
-alone.
+What a trial chooses from is data: a number, a `Uniform` or `LogUniform` range, or `OneOf` several
+of these. Each region takes one thing or all things to their extremes, some beyond the domain. A
+trial depends on its number alone.
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple, TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
@@ -21,316 +21,510 @@ from mjbeer.theory.liquid import NAMES, liquid
 from mjbeer.theory.scene import ATTACHMENTS, GRAVITY, Scene, frozen, hoop, pendulum, sliding
 
 T = TypeVar("T")
-_SWINGS, _TURNED = 400.0, 3e3
-"""Longest motion, in swings, and in angle [rad], which theory can follow."""
+_SWINGS = 400.0
+"""Longest motion that theory can follow, in swings."""
+_TURNED = 3e3
+"""Largest angle of a motion that theory can follow [rad]."""
 _DAMPED = 0.05
 """Share of these that a damped motion may have, which theory follows step by step."""
 _MANY = 200
 """Largest number of regular samples after the start, so that repeating a run takes few of them."""
 
 
-class Even(NamedTuple):
-    """An even distribution between two numbers."""
+class Uniform(NamedTuple):
+    """A number between two others, all of which are equally likely."""
 
     low: float
     high: float
 
 
-class Beside(NamedTuple):
-    """A number less a quantity."""
+class LogUniform(NamedTuple):
+    """A number between two positive ones, whose logarithm is uniform."""
+
+    low: float
+    high: float
+
+
+class OneOf:
+    """One of several quantities, all of which are equally likely."""
+
+    def __init__(self, *options: "Quantity") -> None:
+        self.options = options
+
+
+class Minus(NamedTuple):
+    """A number minus a quantity."""
 
     number: float
-    by: Any
+    by: "Quantity"
 
 
-def signed(quantity: Any) -> list[Any]:
+Quantity = float | Uniform | LogUniform | OneOf | Minus
+"""What a number is chosen from; a float is that number."""
+
+
+def signed(quantity: Quantity) -> OneOf:
     """Return a quantity to either side of 0."""
-    return [quantity, Beside(0, quantity)]
+    return OneOf(quantity, Minus(0, quantity))
 
 
-class Pick:
+class RandomPicker:
     """Makes random choices; the same seed makes the same ones."""
 
     def __init__(self, seed: int) -> None:
         self._generator = np.random.default_rng(seed)
 
-    def __call__(self, quantity: Any) -> float:
+    def number(self, quantity: Quantity) -> float:
         """Return a value of a quantity."""
         match quantity:
-            case Even(low, high):
+            case Uniform(low, high):
                 return float(self._generator.uniform(low, high))
-            case Beside(number, by):
-                return number - self(by)
-            case (low, high) if isinstance(quantity, tuple):
-                return 10 ** self(Even(math.log10(low), math.log10(high)))
-            case [*options]:
-                return self(self.one(*options))
+            case LogUniform(low, high):
+                return 10 ** self.number(Uniform(math.log10(low), math.log10(high)))
+            case Minus(number, by):
+                return number - self.number(by)
+            case OneOf():
+                return self.number(self.one(*quantity.options))
         return float(quantity)
 
     def one(self, *options: T) -> T:
         """Return one of the options; all are equally likely."""
-        return options[int(self._generator.integers(len(options)))] if len(options) > 1 else options[0]
+        if len(options) == 1:
+            return options[0]
+        return options[int(self._generator.integers(len(options)))]
 
 
 @dataclass(frozen=True)
 class Parts:
-    """A scene put together: masses in kg and over each other, lengths over the radius, inertias over m a^2."""
+    """The parts of a scene, in ratios.
 
-    radius: Any
-    load: Any
-    can: Any
-    """The can's mass over that of the load."""
-    rim: Any
+    They are those of a mass to that of the load, of an offset to the radius, and of an inertia to
+    m a^2 of its own mass m."""
+
+    radius: Quantity
+    """[m]"""
+    load: Quantity
+    """The load's mass [kg]."""
+    can: Quantity
+    """The can's mass."""
+    rim: Quantity
     """The can's inertia."""
-    offset: Any
-    own: Any
-    """The load's own inertia."""
-    incline: Any
+    offset: Quantity
+    inertia: Quantity
+    """The load's inertia about its centre of mass."""
+    incline: Quantity
     """[degrees]"""
-    gravity: Any = GRAVITY
+    gravity: Quantity = GRAVITY
 
-    def __call__(self, pick: Pick) -> Scene:
+    def __call__(self, pick: RandomPicker) -> Scene:
         """Return a scene."""
-        radius, load = pick(self.radius), pick(self.load)
-        mass = load * pick(self.can)
-        can = Can(radius, 3 * radius, mass, mass * radius**2 * pick(self.rim))
-        beer = Load(load, radius * pick(self.offset), load * radius**2 * pick(self.own))
-        return Scene(can, beer, math.radians(pick(self.incline)), pick.one(*ATTACHMENTS), pick(self.gravity))
+        radius = pick.number(self.radius)
+        load_mass = pick.number(self.load)
+        can_mass = load_mass * pick.number(self.can)
+        rim = can_mass * radius**2 * pick.number(self.rim)
+        offset = radius * pick.number(self.offset)
+        inertia = load_mass * radius**2 * pick.number(self.inertia)
+        incline = math.radians(pick.number(self.incline))
+        attachment = pick.one(*ATTACHMENTS)
+        gravity = pick.number(self.gravity)
+        can = Can(radius, 3 * radius, can_mass, rim)
+        load = Load(load_mass, offset, inertia)
+        return Scene(can, load, incline, attachment, gravity)
 
 
-_STEADY = Parts([(0.01, 0.3)], 0.1, (1, 1e5), [0.5, 1.0], [1.0, (1e-3, 1)], [0.0, 0.1], [0.0, Even(-20, 20)])
+_HEAVY_CAN = Parts(
+    radius=OneOf(LogUniform(0.01, 0.3)),
+    load=0.1,
+    can=LogUniform(1, 1e5),
+    rim=OneOf(0.5, 1.0),
+    offset=OneOf(1.0, LogUniform(1e-3, 1)),
+    inertia=OneOf(0.0, 0.1),
+    incline=OneOf(0.0, Uniform(-20, 20)),
+)
 """A can so heavy that the inertia hardly depends on the angle."""
 _RATIOS = Parts(
-    [0.033, (1e-3, 10)], [0.1, (1e-4, 1e3)], (1e-4, 1e4), [0.5, 1.0, (1e-12, 1)],
-    [1.0, Even(0, 1), Beside(1, (1e-15, 1)), (1e-12, 1)], [0.0, 0.3, (1e-12, 1)], Even(-20, 20),
-)  # fmt: skip
+    radius=OneOf(0.033, LogUniform(1e-3, 10)),
+    load=OneOf(0.1, LogUniform(1e-4, 1e3)),
+    can=LogUniform(1e-4, 1e4),
+    rim=OneOf(0.5, 1.0, LogUniform(1e-12, 1)),
+    offset=OneOf(1.0, Uniform(0, 1), Minus(1, LogUniform(1e-15, 1)), LogUniform(1e-12, 1)),
+    inertia=OneOf(0.0, 0.3, LogUniform(1e-12, 1)),
+    incline=Uniform(-20, 20),
+)
 _ANYTHING = Parts(
-    (1e-3, 33), (1e-6, 1e4), [0.0, (1e-4, 1e4)], [0.0, 0.5, 1.0, Even(0, 1)], [0.0, 1.0, (1e-9, 1), Even(0, 1)],
-    [0.0, (1e-12, 1), Even(0, 1)], [0.0, 1e-8, 10.0, 89.9, Even(-30, 30), Even(-89.9, 89.9)],
-    [GRAVITY, GRAVITY, GRAVITY, 0.0, (1e-3, 1e3)],
-)  # fmt: skip
+    radius=LogUniform(1e-3, 33),
+    load=LogUniform(1e-6, 1e4),
+    can=OneOf(0.0, LogUniform(1e-4, 1e4)),
+    rim=OneOf(0.0, 0.5, 1.0, Uniform(0, 1)),
+    offset=OneOf(0.0, 1.0, LogUniform(1e-9, 1), Uniform(0, 1)),
+    inertia=OneOf(0.0, LogUniform(1e-12, 1), Uniform(0, 1)),
+    incline=OneOf(0.0, 1e-8, 10.0, 89.9, Uniform(-30, 30), Uniform(-89.9, 89.9)),
+    gravity=OneOf(GRAVITY, GRAVITY, GRAVITY, 0.0, LogUniform(1e-3, 1e3)),
+)
 """Sizes, masses and gravities over their decades, with special cases about as often as others."""
 
 
-def _ordinary(pick: Pick) -> Scene:
-    """Return a scene of the paper, on a moderate incline, with a can of any size that one can carry."""
-    incline, radius = math.radians(pick([0.0, 10.0, Even(-20, 20)])), pick([0.033, (0.01, 0.3)])
+def _ordinary(pick: RandomPicker) -> Scene:
+    """Return a scene of the paper, on a moderate incline, with a can that one can carry."""
+    incline = math.radians(pick.number(OneOf(0.0, 10.0, Uniform(-20, 20))))
+    radius = pick.number(OneOf(0.033, LogUniform(0.01, 0.3)))
     kind = pick.one("beer", "beer", "beer", "pendulum", "hoop")
     if kind == "pendulum":
-        return pendulum(incline, pick((0.02, 2)), pick((0.01, 1)), radius * pick(Even(0.2, 1)), radius, 3 * radius)
+        wheel_mass = pick.number(LogUniform(0.02, 2))
+        load_mass = pick.number(LogUniform(0.01, 1))
+        offset = radius * pick.number(Uniform(0.2, 1))
+        return pendulum(incline, wheel_mass, load_mass, offset, radius, 3 * radius)
     if kind == "hoop":
-        return hoop(incline, pick((2e-3, 0.2)), 0.2, radius, 3 * radius)
+        hoop_mass = pick.number(LogUniform(2e-3, 0.2))
+        return hoop(incline, hoop_mass, 0.2, radius, 3 * radius)
     can = pick.one(Can.massless, Can.sheet_metal)(radius, 3.6 * radius)
-    return pick.one(sliding, frozen)(incline, pick([0.5, Even(0.05, 1)]), can)
+    make = pick.one(sliding, frozen)
+    fill = pick.number(OneOf(0.5, Uniform(0.05, 1)))
+    return make(incline, fill, can)
 
 
-def _fills(pick: Pick) -> Scene:
+def _fills(pick: RandomPicker) -> Scene:
     """Return a scene with a film of beer, or with a can that is nearly full."""
-    fill, can = pick([(1e-4, 0.1), Beside(1, (1e-9, 0.1))]), pick.one(Can.massless, Can.sheet_metal)()
-    return pick.one(sliding, frozen)(math.radians(pick(Even(-20, 20))), fill, can)
+    fill = pick.number(OneOf(LogUniform(1e-4, 0.1), Minus(1, LogUniform(1e-9, 0.1))))
+    can = pick.one(Can.massless, Can.sheet_metal)()
+    make = pick.one(sliding, frozen)
+    incline = math.radians(pick.number(Uniform(-20, 20)))
+    return make(incline, fill, can)
 
 
-def _steep(pick: Pick) -> Scene:
-    incline = math.radians(pick(signed([Even(30, 89.9), Beside(90, (1e-6, 1))])))
+def _steep(pick: RandomPicker) -> Scene:
+    """Return an ordinary scene on a steep incline, up or down."""
+    steepness = OneOf(Uniform(30, 89.9), Minus(90, LogUniform(1e-6, 1)))
+    incline = math.radians(pick.number(signed(steepness)))
     return replace(_ordinary(pick), incline=incline)
 
 
-def _gravity(pick: Pick) -> Scene:
+def _gravity(pick: RandomPicker) -> Scene:
     """Return a scene in no gravity, on an asteroid, or on a star."""
-    return replace(_ordinary(pick), gravity=pick([0.0, (1e-3, 1), (20, 1e3)]))
+    scene = _ordinary(pick)
+    gravity = pick.number(OneOf(0.0, LogUniform(1e-3, 1), LogUniform(20, 1e3)))
+    return replace(scene, gravity=gravity)
 
 
-def _liquid(pick: Pick) -> Scene:
+def _liquid(pick: RandomPicker) -> Scene:
     """Return a can with a real liquid in it."""
-    can = pick.one(Can.massless, Can.sheet_metal)(pick([0.033, (0.02, 0.1)]))
-    return liquid(pick.one(*NAMES), math.radians(pick(Even(-15, 15))), pick(Even(0.05, 0.95)), can)
+    make_can = pick.one(Can.massless, Can.sheet_metal)
+    can = make_can(pick.number(OneOf(0.033, LogUniform(0.02, 0.1))))
+    name = pick.one(*NAMES)
+    incline = math.radians(pick.number(Uniform(-15, 15)))
+    fill = pick.number(Uniform(0.05, 0.95))
+    return liquid(name, incline, fill, can)
 
 
-def _metal(pick: Pick) -> Scene:
+def _metal(pick: RandomPicker) -> Scene:
     """Return a can of sheet metal, as one attaches it to a world."""
-    can = Can.sheet_metal(pick([0.033, (0.02, 0.1)]))
-    return pick.one(sliding, frozen)(math.radians(pick(Even(-15, 15))), pick(Even(0.1, 0.9)), can)
+    can = Can.sheet_metal(pick.number(OneOf(0.033, LogUniform(0.02, 0.1))))
+    make = pick.one(sliding, frozen)
+    incline = math.radians(pick.number(Uniform(-15, 15)))
+    fill = pick.number(Uniform(0.1, 0.9))
+    return make(incline, fill, can)
 
 
-def _damped(pick: Pick, scene: Scene) -> Scene:
-    """Return a scene with a sliding load and with damping over twelve decades, drag over eight, or both.
+def _damped(pick: RandomPicker, scene: Scene) -> Scene:
+    """Return a scene with a sliding load and with damping, drag or both, over many decades.
 
-    The unit of damping is M a^2 over the time of a fall through the radius, and that of drag is M/a; the torque may
-    grow with several powers of the slip rate.
+    The unit of damping is M a^2 divided by the time of a fall through the radius, and that of drag
+    is M/a; the torque may grow with several powers of the slip rate.
     """
-    radius, mass, clock = scene.can.radius, scene.effective_mass, _clock(scene)
-    linear = mass * radius**2 / clock * pick((1e-6, 1e6))
-    squared = Damping(linear, linear * clock * pick((1e-6, 1e2)))
-    cubed = Damping(pick([0.0, linear]), *(linear * clock**power * pick((1e-6, 1e2)) for power in (1, 2)))
-    law = pick.one(linear, linear, squared, cubed, 0.0)
-    drag = mass / radius * pick((1e-6, 1e2))
-    return replace(scene, attachment="sliding", damping=law, drag=pick.one(drag, drag if law == 0 else 0.0))
+    radius = scene.can.radius
+    mass = scene.effective_mass
+    clock = _clock(scene)
+    linear = mass * radius**2 / clock * pick.number(LogUniform(1e-6, 1e6))
+    squared = Damping(linear, linear * clock * pick.number(LogUniform(1e-6, 1e2)))
+    cubed = Damping(
+        pick.number(OneOf(0.0, linear)),
+        linear * clock * pick.number(LogUniform(1e-6, 1e2)),
+        linear * clock**2 * pick.number(LogUniform(1e-6, 1e2)),
+    )
+    damping = pick.one(linear, linear, squared, cubed, 0.0)
+    drag = mass / radius * pick.number(LogUniform(1e-6, 1e2))
+    drag = pick.one(drag, drag if damping == 0 else 0.0)
+    return replace(scene, attachment="sliding", damping=damping, drag=drag)
 
 
 def _clock(scene: Scene) -> float:
-    """Return the time of a fall through the radius [s], or a second without gravity: the pace of a scene."""
-    return math.sqrt(scene.can.radius / scene.gravity) if scene.gravity > 0 else 1.0
+    """Return the time of a fall through the radius [s], or a second without gravity."""
+    if scene.gravity == 0:
+        return 1.0
+    return math.sqrt(scene.can.radius / scene.gravity)
 
 
-_STARTS: dict[str, tuple[Any, Any]] = {
-    "by hand": ([0.0, 1.0, math.pi, Even(-math.pi, math.pi), (1e-9, 1)], [0.0, 0.0, Even(-3, 3)]),
-    "spun": (Even(-4, 4), signed([(2, 500), (2, 500), (1e2, 1e6)])),
-    "far": (signed((1e2, 1e4)), [0.0, Even(-3, 3), signed((1e1, 1e5))]),
-    "let go": (Even(-2.5, 2.5), 0.0),
+class Start(NamedTuple):
+    """The start of a motion."""
+
+    phi0: Quantity
+    """[rad]"""
+    rate: Quantity
+    """phi_dot0, times the clock."""
+
+
+_STARTS = {
+    "by hand": Start(
+        OneOf(0.0, 1.0, math.pi, Uniform(-math.pi, math.pi), LogUniform(1e-9, 1)),
+        OneOf(0.0, 0.0, Uniform(-3, 3)),
+    ),
+    "spun": Start(
+        Uniform(-4, 4),
+        signed(OneOf(LogUniform(2, 500), LogUniform(2, 500), LogUniform(1e2, 1e6))),
+    ),
+    "far": Start(
+        signed(LogUniform(1e2, 1e4)),
+        OneOf(0.0, Uniform(-3, 3), signed(LogUniform(1e1, 1e5))),
+    ),
+    "let go": Start(Uniform(-2.5, 2.5), 0.0),
 }
-"""phi [rad], and phi_dot over the clock's rate; a start beside the separatrix is no row."""
+_BESIDE_THE_SEPARATRIX = "separatrix"
+"""A start that depends on the scene."""
 
 
-def _start(pick: Pick, scene: Scene, name: str) -> tuple[float, float]:
-    """Return a start; beside a barrier's top, without damping, or anywhere with nearly the energy of that top."""
-    try:
-        low, high = replace(scene, damping=0.0, drag=0.0).separatrix() if name == "separatrix" else (0.0, 0.0)
-    except NoEquilibriumError:
-        name = "by hand"
-    if name != "separatrix":
-        phi0, rate = (pick(quantity) for quantity in _STARTS[name])
-        return phi0, rate / _clock(scene)
-    beside = pick(signed((1e-15, 0.1)))
-    if pick.one(True, False):
+def _start(pick: RandomPicker, scene: Scene, name: str) -> tuple[float, float]:
+    """Return phi0 [rad] and phi_dot0 [rad/s]; a scene without a separatrix is started by hand."""
+    if name == _BESIDE_THE_SEPARATRIX:
+        try:
+            low, high = replace(scene, damping=0.0, drag=0.0).separatrix()
+        except NoEquilibriumError:
+            name = "by hand"
+        else:
+            return _start_beside(pick, scene, low, high)
+    start = _STARTS[name]
+    phi0 = pick.number(start.phi0)
+    rate = pick.number(start.rate)
+    return phi0, rate / _clock(scene)
+
+
+def _start_beside(pick: RandomPicker, scene: Scene, low: float, high: float) -> tuple[float, float]:
+    """Return a start at rest beside one of two tops, or between them with nearly their energy."""
+    beside = pick.number(signed(LogUniform(1e-15, 0.1)))
+    at_rest = pick.one(True, False)
+    if at_rest:
         return pick.one(low, high) + beside, 0.0
-    phi0, form = pick(Even(low, high)), scene.oscillator
-    rate = math.sqrt(2 * max(0.0, float(form.drop(phi0, high))) / float(form.inertia(phi0)))
+    phi0 = pick.number(Uniform(low, high))
+    oscillator = scene.oscillator
+    drop = max(0.0, float(oscillator.drop(phi0, high)))
+    rate = math.sqrt(2 * drop / float(oscillator.inertia(phi0)))
     return phi0, pick.one(1, -1) * rate * (1 + beside)
 
 
-_MANY_STEPS, _NEARLY = (20, 3000), [1.0, Beside(1, signed((1e-12, 0.1)))]
-_WHOLE = [math.pi * part * times for part in (0.5, 1.0, 2.0, 4.0, 8.0, 16.0) for times in (1, 1, 1, 2, 3)]
-_PACES: dict[str, tuple[str, Any, Any]] = {
-    "usual": ("clock", (1e-3, 0.3), _MANY_STEPS),
-    "swinging": ("swing", (1e-3, 0.1), _MANY_STEPS),
-    "extreme": ("fast", (1e-4, 3), (10, 1e4)),
-    "turning": ("turn", (1e-2, 1e2), _MANY_STEPS),
-    # A whole number of turns, or nearly, in a step or a part of one: RK4 evaluates forces at half steps, and a run at
-    # half the timestep at quarters of them, all of which then see the same angle.
-    "resonant": ("turn", _WHOLE, [(2, 30), (2, 500)]),
-    "few": ("clock", (1e-6, 3), Even(1, 6)),
-    "long": ("second", (5e-3, 3e-2), (4e3, 1.5e4)),
-    "desk": ("second", (1e-4, 1e-3), (100, 2000)),
+class Pace(NamedTuple):
+    """Timestep and length of a run."""
+
+    unit: str
+    """That of the timestep, as in `_unit`."""
+    timestep: Quantity
+    steps: Quantity
+
+
+_MANY_STEPS = LogUniform(20, 3000)
+_NEARLY_ONE = OneOf(1.0, Minus(1, signed(LogUniform(1e-12, 0.1))))
+_MULTIPLES = (1, 1, 1, 2, 3)
+_WHOLE_TURNS = OneOf(
+    *(
+        math.pi * part * multiple
+        for part in (0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
+        for multiple in _MULTIPLES
+    )
+)
+_RESONANT = "resonant"
+"""A whole number of turns, or nearly, in a step or a part of one.
+
+RK4 evaluates forces at half steps, and a run at half the timestep at quarters of them, all of which
+then see the same angle.
+"""
+_LONG_STEPS = LogUniform(4e3, 1.5e4)
+_PACES = {
+    "usual": Pace("clock", LogUniform(1e-3, 0.3), _MANY_STEPS),
+    "swinging": Pace("swing", LogUniform(1e-3, 0.1), _MANY_STEPS),
+    "extreme": Pace("fast", LogUniform(1e-4, 3), LogUniform(10, 1e4)),
+    "turning": Pace("turn", LogUniform(1e-2, 1e2), _MANY_STEPS),
+    _RESONANT: Pace("turn", _WHOLE_TURNS, OneOf(LogUniform(2, 30), LogUniform(2, 500))),
+    "few": Pace("clock", LogUniform(1e-6, 3), Uniform(1, 6)),
+    "long": Pace("second", LogUniform(5e-3, 3e-2), _LONG_STEPS),
+    "desk": Pace("second", LogUniform(1e-4, 1e-3), LogUniform(100, 2000)),
 }
-"""The unit of the timestep, the timestep, and the number of steps."""
 
 
-def _pace(pick: Pick, scene: Scene, start: tuple[float, float], name: str) -> tuple[float, int]:
-    """Return timestep [s] and number of steps at one of the paces, or less: as much as theory can follow."""
-    spin, frequency, form, clock = abs(start[1]), _frequency(scene, start), scene.oscillator, _clock(scene)
-    unit, timestep, steps = _PACES[name]
-    units = {"clock": clock, "second": 1.0, "turn": 1 / max(spin, 1 / clock), "fast": clock / max(1.0, spin * clock)}
-    units["swing"] = 2 * math.pi / max(frequency, spin, 1e-3 / clock)
-    step = units[unit] * pick(timestep) * (pick(_NEARLY) if name == "resonant" else 1.0)
-    share = _DAMPED if scene.dissipates else 1.0
-    push = max(abs(form.ramp) / (form.base + (form.chord + form.coupling) / 2), 1e-300)
+def _unit(name: str, clock: float, spin: float, frequency: float) -> float:
+    """Return a unit of time [s], from a scene's clock [s], and rates of turn and swing [rad/s]."""
+    match name:
+        case "clock":
+            return clock
+        case "fast":
+            return clock / max(1.0, spin * clock)
+        case "turn":
+            return 1 / max(spin, 1 / clock)
+        case "swing":
+            return 2 * math.pi / max(frequency, spin, 1e-3 / clock)
+    return 1.0  # a second
+
+
+def _pace(
+    pick: RandomPicker, scene: Scene, phi0: float, phi_dot0: float, name: str
+) -> tuple[float, int]:
+    """Return timestep [s] and number of steps at one of the paces, or as much as theory follows."""
+    pace = _PACES[name]
+    spin = abs(phi_dot0)
+    frequency = _frequency(scene, phi0, phi_dot0)
+    timestep = _unit(pace.unit, clock=_clock(scene), spin=spin, frequency=frequency)
+    timestep *= pick.number(pace.timestep)
+    if name == _RESONANT:
+        timestep *= pick.number(_NEARLY_ONE)
+    longest = _longest(scene, spin, frequency)
+    timestep = min(timestep, longest)
+    steps = min(pick.number(pace.steps), longest / timestep)
+    return timestep, max(1, int(steps))
+
+
+def _longest(scene: Scene, spin: float, frequency: float) -> float:
+    """Return the longest time [s] over which theory can follow a motion."""
+    oscillator = scene.oscillator
+    mean_inertia = oscillator.base + (oscillator.chord + oscillator.coupling) / 2
+    push = max(abs(oscillator.ramp) / mean_inertia, 1e-300)  # angular acceleration [rad/s^2]
+    share = 1.0
     if scene.dissipates:  # the load may turn with the can
+        share = _DAMPED
         push = max(push, scene.gravity * abs(math.sin(scene.incline)) / scene.can.radius)
-    longest = min(share * _TURNED / max(spin, 1e-300), math.sqrt(2 * share * _TURNED / push))
+    turned = share * _TURNED
+    longest = min(turned / max(spin, 1e-300), math.sqrt(2 * turned / push))
     if frequency > 0:
         longest = min(longest, share * _SWINGS * 2 * math.pi / frequency)
-    step = min(step, longest)
-    return step, max(1, int(min(pick(steps), longest / step)))
+    return longest
 
 
-def _frequency(scene: Scene, start: tuple[float, float]) -> float:
+def _frequency(scene: Scene, phi0: float, phi_dot0: float) -> float:
     """Return about the angular frequency of the swing of a start [rad/s].
 
-    Where the can is light and the load has next to no inertia, a small swing about the bottom is faster by many decades
-    than a large one.
+    Where the can is light and the load has next to no inertia, a small swing about the bottom is
+    faster by many decades than a large one.
     """
-    form = scene.oscillator
-    if form.depth == 0:
+    oscillator = scene.oscillator
+    depth = oscillator.depth
+    if depth == 0:
         return 0.0
-    kinetic = float(form.inertia(start[0])) * start[1] ** 2 / 2
-    height = 2 * form.depth * math.sin((start[0] - form.bottom) / 2) ** 2
-    square = min(1.0, 2 * (kinetic + height) / form.depth)  # of the swing's amplitude
-    return math.sqrt(form.depth / (form.base + (form.chord / 4 + form.coupling) * square / 2))
+    kinetic = float(oscillator.inertia(phi0)) * phi_dot0**2 / 2
+    height = 2 * depth * math.sin((phi0 - oscillator.bottom) / 2) ** 2
+    square_of_amplitude = min(1.0, 2 * (kinetic + height) / depth)
+    varying = (oscillator.chord / 4 + oscillator.coupling) * square_of_amplitude / 2
+    return math.sqrt(depth / (oscillator.base + varying))
 
 
-def _setting(pick: Pick, scene: Scene, kind: str) -> dict[str, Any]:
-    """Return any setting that the scene allows, in every fourth run a tolerance unless it is in contact.
+def _with_setting(pick: RandomPicker, trial: Trial, kind: str) -> Trial:
+    """Return a trial with any setting that its scene allows, in every fourth run a tolerance.
 
-    A "contact" has next to no friction, or plenty; "any" may be one that MuJoCo cannot have; "attached" is a can in a
-    world of its own, which steps it accurately.
+    A "contact" has next to no friction, or plenty, and no tolerance; "any" may be one that MuJoCo
+    cannot have; "attached" is a can in a world of its own, which steps it accurately.
     """
     if kind == "attached":
-        return {"rolling": "contact", "integrator": "RK4", "attached": True}
-    rollings = [*(each for each in ROLLINGS if supported(scene, each)), *(ROLLINGS if kind == "any" else ())]
-    rolling, friction = ("contact", (0.01, 10)) if kind == "contact" else (pick.one(*rollings), [1.0, 1.0, (0.01, 1e3)])
-    setting: dict[str, Any] = {"rolling": rolling, "friction": pick(friction)}
+        return replace(trial, rolling="contact", integrator="RK4", attached=True)
+    if kind == "contact":
+        rolling = "contact"
+        friction = pick.number(LogUniform(0.01, 10))
+    else:
+        rollings = [rolling for rolling in ROLLINGS if supported(trial.scene, rolling)]
+        if kind == "any":
+            rollings += ROLLINGS
+        rolling = pick.one(*rollings)
+        friction = pick.number(OneOf(1.0, 1.0, LogUniform(0.01, 1e3)))
+    trial = replace(trial, rolling=rolling, friction=friction)
     if rolling != "contact" and pick.one(True, False, False, False):
-        return setting | {"tolerance": pick((1e-12, 0.03))}
-    return setting | {"integrator": pick.one(*MUJOCO_INTEGRATORS, "RK4", "DOP853", "DOP853")}
+        return replace(trial, tolerance=pick.number(LogUniform(1e-12, 0.03)))
+    integrator = pick.one(*MUJOCO_INTEGRATORS, "RK4", "DOP853", "DOP853")
+    return replace(trial, integrator=integrator)
 
 
-def _samples(pick: Pick, steps: int, anywhere: bool, kind: str) -> dict[str, Any]:
-    """Return samples of a kind, as fields of a trial: `anywhere`, or at whole numbers of timesteps.
+def _with_samples(pick: RandomPicker, trial: Trial, kind: str) -> Trial:
+    """Return a trial with samples of a kind, at whole numbers of timesteps if it has any.
 
-    "regular" ones are at every timestep, or every so many, "sparse" are two to six, and "late" is the last alone, or
-    with the one before.
+    "regular" ones are at every timestep, or every so many, "sparse" are two to six, and "late" is
+    the last alone, or with the one before.
     """
+    steps = trial.steps
     if kind == "regular":
-        return {"every": max(1, -(-steps // pick.one(_MANY, 10 * _MANY)))}
+        most = pick.one(_MANY, 10 * _MANY)
+        return replace(trial, every=max(1, math.ceil(steps / most)))
     if kind == "late":
-        return {"moments": tuple(sorted({float(max(0, steps - pick.one(0, 0, 1))), float(steps)}))}
-    moments = {pick(Even(0, steps)) for _ in range(pick.one(2, 3, 4, 5, 6))}
-    return {"moments": tuple(sorted(moments if anywhere else {float(round(moment)) for moment in moments}))}
+        before = max(0, steps - pick.one(0, 0, 1))
+        moments = {float(before), float(steps)}
+    else:
+        count = pick.one(2, 3, 4, 5, 6)
+        moments = {pick.number(Uniform(0, steps)) for _ in range(count)}
+        if trial.integrator not in (None, "DOP853"):
+            moments = {float(round(moment)) for moment in moments}
+    return replace(trial, moments=tuple(sorted(moments)))
 
 
 class Region(NamedTuple):
-    """A part of the search: what its trials choose from for scene, start, pace, setting and samples."""
+    """A part of the search: what its trials choose from; all of each kind are equally likely."""
 
     name: str
-    scenes: Sequence[Callable[[Pick], Scene]] = (_ordinary,)
-    starts: Sequence[str] = ("by hand",)
-    paces: Sequence[str] = ("usual",)
+    scenes: tuple[Callable[[RandomPicker], Scene], ...] = (_ordinary,)
+    starts: tuple[str, ...] = ("by hand",)
+    paces: tuple[str, ...] = ("usual",)
     setting: str = "usual"
-    samples: Sequence[str] = ("regular",)
+    samples: tuple[str, ...] = ("regular",)
     damped: bool = False
 
-    def draw(self, pick: Pick) -> Trial:
+    def draw(self, pick: RandomPicker) -> Trial:
         """Return a random trial of this region.
 
         Raises:
-          ParameterError: if the choices make a scene that cannot be, or a start or timestep outside the domain.
+          ParameterError: if the choices make a scene that cannot be, or a start or timestep outside
+            the domain.
         """
-        scene = pick.one(*self.scenes)(pick)
-        scene = _damped(pick, scene) if self.damped else scene
-        start = _start(pick, scene, pick.one(*self.starts))
-        timestep, steps = _pace(pick, scene, start, pick.one(*self.paces))
-        setting = _setting(pick, scene, self.setting)
-        setting |= _samples(pick, steps, setting.get("integrator") in (None, "DOP853"), pick.one(*self.samples))
-        require.start(*start)
+        make_scene = pick.one(*self.scenes)
+        scene = make_scene(pick)
+        if self.damped:
+            scene = _damped(pick, scene)
+        phi0, phi_dot0 = _start(pick, scene, pick.one(*self.starts))
+        timestep, steps = _pace(pick, scene, phi0, phi_dot0, pick.one(*self.paces))
+        trial = Trial(scene, phi0, phi_dot0, timestep=timestep, steps=steps)
+        trial = _with_setting(pick, trial, self.setting)
+        trial = _with_samples(pick, trial, pick.one(*self.samples))
+        require.start(phi0, phi_dot0)
         require.within("timestep", timestep, *require.TIMESTEP)
-        return Trial(scene, *start, timestep=timestep, steps=steps, **setting)
+        return trial
 
 
-_ANY = (_ordinary, _STEADY, _ANYTHING, _RATIOS, _fills, _steep, _gravity)
-_ANY_START, _ANY_PACE = ("by hand", "by hand", "spun", "far", "separatrix"), tuple(_PACES)[:-1]
-_MOSTLY, _HEAVY, _EITHER = (_ordinary, _ordinary, _ANYTHING), (_STEADY, _STEADY, _ordinary), ("usual", "swinging")
-_SAMPLES = ("regular", "sparse", "late")
+_EVERY_SCENE = (_ordinary, _HEAVY_CAN, _ANYTHING, _RATIOS, _fills, _steep, _gravity)
+_EVERY_START = ("by hand", "by hand", "spun", "far", _BESIDE_THE_SEPARATRIX)
+_EVERY_PACE = ("usual", "swinging", "extreme", "turning", _RESONANT, "few", "long")
+_EVERY_SAMPLING = ("regular", "sparse", "late")
+_MOSTLY_ORDINARY = (_ordinary, _ordinary, _ANYTHING)
+_MOSTLY_HEAVY = (_HEAVY_CAN, _HEAVY_CAN, _ordinary)
+_USUAL_OR_SWINGING = ("usual", "swinging")
 REGIONS = (
     Region("ordinary"),
-    Region("anything", (_ANYTHING,), _ANY_START, ("extreme",), "any"),
-    Region("sparse samples", _MOSTLY, paces=_EITHER, samples=("sparse",)),
-    Region("single late sample", _MOSTLY, paces=_EITHER, samples=("late",)),
+    Region("anything", (_ANYTHING,), _EVERY_START, ("extreme",), "any"),
+    Region("sparse samples", _MOSTLY_ORDINARY, paces=_USUAL_OR_SWINGING, samples=("sparse",)),
+    Region("single late sample", _MOSTLY_ORDINARY, paces=_USUAL_OR_SWINGING, samples=("late",)),
     Region("few steps", paces=("few",)),
-    Region("fast rotation", _HEAVY, ("spun",), ("turning",)),
-    Region("resonance", _HEAVY, ("spun",), ("resonant",), samples=_SAMPLES),
+    Region("fast rotation", _MOSTLY_HEAVY, ("spun",), ("turning",)),
+    Region("resonance", _MOSTLY_HEAVY, ("spun",), (_RESONANT,), samples=_EVERY_SAMPLING),
     Region("contact friction", setting="contact"),
-    Region("mass ratios", (_RATIOS,), paces=_EITHER),
-    Region("thin or full", (_fills,), paces=_EITHER, samples=_SAMPLES),
-    Region("long", paces=("long",), samples=_SAMPLES),
-    Region("far angles", starts=("far",), samples=_SAMPLES),
+    Region("mass ratios", (_RATIOS,), paces=_USUAL_OR_SWINGING),
+    Region("thin or full", (_fills,), paces=_USUAL_OR_SWINGING, samples=_EVERY_SAMPLING),
+    Region("long", paces=("long",), samples=_EVERY_SAMPLING),
+    Region("far angles", starts=("far",), samples=_EVERY_SAMPLING),
     Region("steep", (_steep,)),
     Region("weak or strong gravity", (_gravity,)),
-    Region("beside the separatrix", starts=("separatrix",), samples=_SAMPLES),
-    Region("mixed", _ANY, _ANY_START, _ANY_PACE, "any", _SAMPLES),
-    Region("liquids", (_liquid,), paces=_EITHER),
+    Region("beside the separatrix", starts=(_BESIDE_THE_SEPARATRIX,), samples=_EVERY_SAMPLING),
+    Region("mixed", _EVERY_SCENE, _EVERY_START, _EVERY_PACE, "any", _EVERY_SAMPLING),
+    Region("liquids", (_liquid,), paces=_USUAL_OR_SWINGING),
     Region("attached", (_metal,), ("let go",), ("desk",), "attached"),
-    Region("damped", paces=_EITHER, damped=True),
-    Region("damped, mixed", _ANY, _ANY_START, _ANY_PACE, "any", _SAMPLES, damped=True),
+    Region("damped", paces=_USUAL_OR_SWINGING, damped=True),
+    Region(
+        "damped, mixed",
+        _EVERY_SCENE,
+        _EVERY_START,
+        _EVERY_PACE,
+        "any",
+        _EVERY_SAMPLING,
+        damped=True,
+    ),
 )
 """All regions; as many trials are drawn from each."""
 
@@ -338,9 +532,10 @@ REGIONS = (
 def random_trial(number: int) -> Trial:
     """Return the trial of a number from 0 on, in the regions by turns.
 
-    The regions are wider than the domain: what it refuses counts as refused, and is not drawn again.
+    The regions are wider than the domain: what it refuses counts as refused, and is not drawn
+    again.
 
     Raises:
       ParameterError: if the scene, the start or the timestep is outside the domain.
     """
-    return REGIONS[number % len(REGIONS)].draw(Pick(number))
+    return REGIONS[number % len(REGIONS)].draw(RandomPicker(number))

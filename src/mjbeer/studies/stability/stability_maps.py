@@ -1,14 +1,15 @@
-"""Maps of timestep and stiffness or damping: how short runs of stiff models end, measured and by linear theory.
+"""Maps of timestep and stiffness: how runs of stiff models end, measured and by linear theory.
 
-A can with frozen beer on level ground is the stiffer, the harder its constraint, or the stronger gravity. Beer that
-slides in a can of sheet metal is the stiffer, the stronger it is damped. Both motions, MuJoCo's and theory's, begin
-with the same small swing and are judged by the same rule.
+A can with frozen beer on level ground is the stiffer, the harder its constraint, or the stronger
+gravity. Beer that slides in a can of sheet metal is the stiffer, the stronger it is damped. Both
+motions, MuJoCo's and theory's, begin with the same small swing and are judged by the same rule.
 """
 
 import json
 import math
 import pathlib
 from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -20,6 +21,7 @@ from matplotlib.colors import ListedColormap
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from mjbeer.checks.check import Check, Result
 from mjbeer.exceptions import DivergenceError
 from mjbeer.integrators.dop853 import DOP853
 from mjbeer.integrators.dynamics import Dynamics
@@ -29,34 +31,41 @@ from mjbeer.model.joints import joint_addresses
 from mjbeer.model.setting import MUJOCO_INTEGRATORS, Integrator
 from mjbeer.output.plots import COLOURS, chart, name_below
 from mjbeer.output.terminal import Table
-from mjbeer.paper.checks import Check, Result
 from mjbeer.studies import predictions
-from mjbeer.studies.predictions import ACCURACY, GROWTH, spring
+from mjbeer.studies.predictions import ACCURACY, GROWTH, SoftRow, spring
 from mjbeer.studies.study import FAILED
 from mjbeer.theory.can import Can
-from mjbeer.theory.scene import frozen, sliding
+from mjbeer.theory.scene import Scene, frozen, sliding
 
 MAPS = "maps"
 """The group of the study that the maps are in."""
 SHIPPED = pathlib.Path(__file__).with_name("maps.json")
 """The maps that come with mjbeer; `mjbeer stability` wrote them."""
-CELLS, FEW_CELLS = 20, 8
-"""Number of timesteps and of values in a map, and in one of a quick study."""
+CELLS = 20
+"""Number of timesteps and of values in a map."""
+FEW_CELLS = 8
+"""The same in a quick study."""
 _AGREEMENT = 0.05
 """Largest relative difference at which a measured border agrees with the predicted one."""
 _RESOLUTION = 1.01
 """Bisection ends when the two timesteps that enclose a border have this ratio."""
-EXPLODED, INACCURATE, ACCURATE = range(3)
-"""Outcomes of a run, as numbers for the cells of a map."""
+EXPLODED = 0
+INACCURATE = 1
+ACCURATE = 2
+"""Outcomes of a run, as digits for the cells of a map."""
 _IMPEDANCE = 0.9
 """dmin and dmax in the solimp of the constraints: both are MuJoCo's default dmin."""
 _SWING = 1e-4
 """Angle from which the can is let go [rad]."""
-_SEED = 1e-7
-"""Initial violation of the constraint, relative to `_SWING`. It must be tiny: a stiff constraint corrects it within one
-time constant, and 1e-4 would already disturb the swing by 1 % at tau = 1 ms."""
+_VIOLATION = 1e-7
+"""Initial violation of the constraint, relative to `_SWING`.
+
+It must be tiny: a stiff constraint corrects it within one time constant, and 1e-4 would already
+disturb the swing by 1 % at tau = 1 ms.
+"""
 _STEPS = 1000
-"""Least number of steps of a swing: within it, a growth of 2 % a step makes any initial violation visible."""
+"""Least number of steps of a swing: within it, a growth of 2 % a step makes any initial violation
+visible."""
 _ALL: tuple[Integrator, ...] = (*MUJOCO_INTEGRATORS, "DOP853")
 PLANS: tuple[tuple[str, Integrator], ...] = (
     *(("solref", name) for name in _ALL),
@@ -64,14 +73,70 @@ PLANS: tuple[tuple[str, Integrator], ...] = (
     *(("gravity", name) for name in _ALL),
     *(("damping", name) for name in _ALL),
 )
-"""All maps: the cause of stiffness, which is an equality whose solref has a time constant ("solref") or a stiffness
-("direct"), "gravity" without a constraint, or the "damping" between can and load; and the integrator."""
+"""All maps: the cause of stiffness, which is an equality whose solref has a time constant
+("solref") or a stiffness ("direct"), "gravity" without a constraint, or the "damping" between can
+and load; and the integrator."""
 SHADES = {"exploded": "#E8A27C", "stable, inaccurate": "#BFDFF2", "stable and accurate": COLOURS[0]}
 """The outcomes, and their colours, which differ in hue and in brightness."""
 _THEORY: dict[str, Any] = {"color": "black", "linewidth": 1.6}
 """The look of a border that theory predicts."""
-_MEASURED: dict[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 3.5, "color": "black"}
-_MEASURED |= {"markerfacecolor": "white", "markeredgewidth": 0.7}
+_MEASURED: dict[str, Any] = {
+    "linestyle": "none",
+    "marker": "o",
+    "markersize": 3.5,
+    "color": "black",
+    "markerfacecolor": "white",
+    "markeredgewidth": 0.7,
+}
+
+
+class Border(NamedTuple):
+    """The least timestep [s] from which on runs explode, or None where none does."""
+
+    measured: float | None
+    predicted: float | None
+
+    @property
+    def difference(self) -> float:
+        """Relative difference of the two: 0 if neither exists, 1 if only one of them does."""
+        if self.measured is None and self.predicted is None:
+            return 0.0
+        if self.measured is None or self.predicted is None:
+            return 1.0
+        return abs(self.measured / self.predicted - 1)
+
+
+@dataclass(frozen=True)
+class StabilityMap:
+    """How runs of one family with one integrator ended, by timestep and value."""
+
+    name: str
+    """Family and integrator."""
+    worst: float
+    """Largest relative difference of a measured and a predicted border."""
+    family: str
+    integrator: str
+    same: float
+    """Share of the cells whose outcome is the predicted one."""
+    timesteps: list[float]
+    """[s]"""
+    values: list[float]
+    """Of the family's quantity."""
+    measured: list[str]
+    """A string for each value, with a digit for each timestep: the outcome."""
+    boundaries: list[Border]
+    """The border for each value."""
+
+
+@dataclass(frozen=True)
+class StoredMaps:
+    """Maps, with the study that they are of."""
+
+    command: str
+    settings: dict[str, Any]
+    machine: dict[str, Any]
+    date: str
+    maps: list[StabilityMap]
 
 
 class Family(NamedTuple):
@@ -113,39 +178,40 @@ FAMILIES = {
         (1e-4, 1e1),
         "damping [N m s]",
         "Damping between can and load: which timestep explodes, and which is accurate",
-        "No constraint: timestep against damping, for half a metal can of beer. Real liquids have at most 0.02 N m s.",
+        "No constraint: timestep against damping, for half a metal can of beer. "
+        "Real liquids have at most 0.02 N m s.",
     ),
 }
 
 
 class Swings:
-    """Swings of one family with one integrator and one value: a time constant [s], a direct stiffness [1/s^2], a
-    gravity [m/s^2], or a damping [N m s].
+    """Swings of one family with one integrator and one value of the family's quantity.
 
-    A swing that grows beyond `GROWTH` times its start has exploded, and one whose error exceeds `ACCURACY` in the first
-    half period is inaccurate.
+    A swing that grows beyond `GROWTH` times its start has exploded, and one whose error exceeds
+    `ACCURACY` in the first half period is inaccurate.
     """
 
     def __init__(self, family: str, integrator: Integrator, value: float) -> None:
-        self._integrator, self._row = integrator, None
+        self._integrator = integrator
+        self._row = None
         if family in ("solref", "direct"):
-            scene, critical = frozen(0.0), 2 * math.sqrt(value)
-            spec = specify(scene, "equality", integrator=integrator)
-            direct = family == "direct"
-            for constraint in spec.equalities:
-                constraint.solref = (-value, -critical) if direct else (value, 1.0)
-                constraint.solimp[:2] = _IMPEDANCE
-            row = predictions.direct(value, critical, _IMPEDANCE) if direct else spring(value, 1.0, _IMPEDANCE)
-            self._model, self._row = spec.compile(), row
-        else:
-            damped = family == "damping"
-            scene = sliding(0.0, can=Can.sheet_metal(), damping=value) if damped else frozen(0.0, gravity=value)
+            scene = frozen(0.0)
+            self._row = _soft_row(family, value)
+            self._model = _model_with_equality(scene, integrator, family, value)
+        elif family == "damping":
+            scene = sliding(0.0, can=Can.sheet_metal(), damping=value)
             self._model = build(scene, "reduced", integrator=integrator)
-        self._frequency, self._right = scene.frequency(), predictions.small_motion(scene)
-        self._theory = predictions.small_motion(scene, constrained=self._row is not None)
+        else:
+            scene = frozen(0.0, gravity=value)
+            self._model = build(scene, "reduced", integrator=integrator)
+        self._frequency = scene.frequency()
+        self._exact = predictions.small_motion(scene)
+        constrained = self._row is not None
+        self._theory = predictions.small_motion(scene, constrained=constrained)
         self._start = np.zeros(self._model.nq + self._model.nv)
-        for name, at in joint_addresses(self._model).items():
-            self._start[at] = _SWING * (scene.can.radius * (1 + _SEED) if name == "slide" else 1.0)
+        for name, place in joint_addresses(self._model).items():
+            distance = scene.can.radius * (1 + _VIOLATION)
+            self._start[place] = _SWING * (distance if name == "slide" else 1.0)
 
     def measure(self, timestep: float) -> int:
         """Simulate with a timestep [s] and return the outcome."""
@@ -163,7 +229,7 @@ class Swings:
         return self._judge(states, timestep)
 
     def predict(self, timestep: float) -> int:
-        """Return the outcome by linear theory, which multiplies the start by the matrix of one step again and again."""
+        """Return the outcome by linear theory: the start times the powers of one step's matrix."""
         matrix = self._theory.step(self._integrator, timestep, self._row)
         unit = np.repeat([1.0, timestep], self._model.nq)
         states = predictions.motion(matrix, self._start * unit, self._steps(timestep))
@@ -175,130 +241,252 @@ class Swings:
         return max(_STEPS, math.ceil(math.pi / (self._frequency * timestep)))
 
     def _judge(self, states: np.ndarray, timestep: float) -> int:
+        """Return the outcome of a run with these states at its timesteps."""
         count = self._model.nq
         with np.errstate(invalid="ignore"):
-            if not (np.abs(states[:, :count]) < GROWTH * self._start[:count]).all():
-                return EXPLODED
-        pace, last = self._frequency * timestep, len(self._right.mass) - 1  # phi is the last coordinate everywhere
-        early = states[: max(1, math.floor(math.pi / pace)) + 1] / _SWING
-        right = predictions.motion(self._right.exact(timestep), np.eye(2 * last + 2)[last], len(early) - 1)
-        phi = early[:, count - 1] - right[:, last]
-        rate = early[:, -1] / self._frequency - right[:, -1] / pace
-        return ACCURATE if np.hypot(phi, rate).max() < ACCURACY else INACCURATE
+            bounded = np.abs(states[:, :count]) < GROWTH * self._start[:count]
+        if not bounded.all():
+            return EXPLODED
+        angle = self._frequency * timestep  # of the swing in a timestep
+        early = states[: max(1, math.floor(math.pi / angle)) + 1] / _SWING
+        # phi is the last coordinate everywhere.
+        phi = len(self._exact.mass) - 1
+        let_go = np.eye(2 * phi + 2)[phi]
+        exact = predictions.motion(self._exact.exact(timestep), let_go, len(early) - 1)
+        phi_error = early[:, count - 1] - exact[:, phi]
+        rate_error = early[:, -1] / self._frequency - exact[:, -1] / angle
+        if np.hypot(phi_error, rate_error).max() < ACCURACY:
+            return ACCURATE
+        return INACCURATE
+
+
+def _soft_row(family: str, value: float) -> SoftRow:
+    """Return the row of theory for a time constant [s] or a direct stiffness [1/s^2]."""
+    if family == "direct":
+        return predictions.direct(value, _critical(value), _IMPEDANCE)
+    return spring(value, 1.0, _IMPEDANCE)
+
+
+def _model_with_equality(
+    scene: Scene, integrator: Integrator, family: str, value: float
+) -> mujoco.MjModel:
+    """Return a model with an equality of the same row."""
+    spec = specify(scene, "equality", integrator=integrator)
+    for constraint in spec.equalities:
+        constraint.solref = (-value, -_critical(value)) if family == "direct" else (value, 1.0)
+        constraint.solimp[:2] = _IMPEDANCE
+    return spec.compile()
+
+
+def _critical(stiffness: float) -> float:
+    """Return the critical damping [1/s] of a direct stiffness [1/s^2]."""
+    return 2 * math.sqrt(stiffness)
 
 
 def checks(cells: int = CELLS) -> list[Check]:
     """Return a check a map, of so many timesteps and values."""
     reason = "bisection to 1 %, and an instability has to grow before it is seen"
-    measures = {", ".join(plan): partial(measure, *plan, cells) for plan in PLANS}
-    return [Check(MAPS, name, of, "", _AGREEMENT, "relative", reason) for name, of in measures.items()]
+    listed = []
+    for family, integrator in PLANS:
+        values = partial(measured_values, family, integrator, cells)
+        name = _name(family, integrator)
+        listed.append(Check(MAPS, name, values, "", _AGREEMENT, "relative", reason))
+    return listed
 
 
-def measure(family: str, integrator: Integrator, cells: int) -> dict[str, Any]:
-    """Return how runs end at so many timesteps and as many values, and the border from which on they explode.
+def _name(family: str, integrator: str) -> str:
+    """Return the name of a map."""
+    return f"{family}, {integrator}"
 
-    "measured" has a string for each value and a digit for each timestep, the outcome; "same" is the share of cells
-    whose outcome is the predicted one. "boundaries" has for each value the timestep [s] from which on runs explode,
-    measured and predicted, or None where none does; "error" is the largest relative difference of the two.
-    """
-    timesteps, values = (np.geomspace(*span, cells).tolist() for span in FAMILIES[family][:2])
-    measured, boundaries, same = [], [], []
+
+def measured_values(family: str, integrator: Integrator, cells: int) -> dict[str, Any]:
+    """Return a map as the values of a `Check`."""
+    values = asdict(measure(family, integrator, cells))
+    values["error"] = values.pop("worst")
+    del values["name"]
+    return values
+
+
+def measure(family: str, integrator: Integrator, cells: int) -> StabilityMap:
+    """Return how runs end at so many timesteps and as many values."""
+    ranges = FAMILIES[family]
+    timesteps = np.geomspace(*ranges.timesteps, cells).tolist()
+    values = np.geomspace(*ranges.values, cells).tolist()
+    measured = []
+    borders = []
+    as_predicted = []
     for value in values:
-        runs = Swings(family, integrator, value)
-        ended, expected = ([judge(timestep) for timestep in timesteps] for judge in (runs.measure, runs.predict))
-        measured.append("".join(map(str, ended)))
-        same.append(np.equal(ended, expected))
-        boundaries.append((_border(runs.measure, timesteps, ended), _border(runs.predict, timesteps, expected)))
-    return {
-        "family": family,
-        "integrator": integrator,
-        "same": float(np.mean(same)),
-        "timesteps": timesteps,
-        "values": values,
-        "measured": measured,
-        "boundaries": boundaries,
-        "error": max(difference(*borders) for borders in boundaries),
-    }
+        swings = Swings(family, integrator, value)
+        outcomes = [swings.measure(timestep) for timestep in timesteps]
+        predicted = [swings.predict(timestep) for timestep in timesteps]
+        measured.append("".join(str(outcome) for outcome in outcomes))
+        as_predicted.append(np.equal(outcomes, predicted))
+        borders.append(
+            Border(
+                _first_explosion(swings.measure, timesteps, outcomes),
+                _first_explosion(swings.predict, timesteps, predicted),
+            )
+        )
+    return StabilityMap(
+        name=_name(family, integrator),
+        worst=max(border.difference for border in borders),
+        family=family,
+        integrator=integrator,
+        same=float(np.mean(as_predicted)),
+        timesteps=timesteps,
+        values=values,
+        measured=measured,
+        boundaries=borders,
+    )
 
 
-def _border(outcome: Callable[[float], int], timesteps: list[float], outcomes: list[int]) -> float | None:
-    """Return the least timestep [s] that explodes, by bisection beside the first that did; None if none did."""
+def _first_explosion(
+    outcome: Callable[[float], int], timesteps: list[float], outcomes: list[int]
+) -> float | None:
+    """Return the least timestep [s] that explodes, by bisection beside the first that did."""
     if EXPLODED not in outcomes:
         return None
-    if (place := outcomes.index(EXPLODED)) == 0:
+    place = outcomes.index(EXPLODED)
+    if place == 0:
         return timesteps[0]
-    low, high = timesteps[place - 1 : place + 1]
+    low = timesteps[place - 1]
+    high = timesteps[place]
     while high / low > _RESOLUTION:
         middle = math.sqrt(low * high)
-        low, high = (low, middle) if outcome(middle) == EXPLODED else (middle, high)
+        if outcome(middle) == EXPLODED:
+            high = middle
+        else:
+            low = middle
     return math.sqrt(low * high)
 
 
-def difference(measured: float | None, predicted: float | None) -> float:
-    """Return the relative difference of two borders: 0 if neither exists, 1 if only one of them does."""
-    if measured is None or predicted is None:
-        return float(measured is not predicted)
-    return abs(measured / predicted - 1)
-
-
 def table(results: Sequence[Result]) -> Table:
-    """Return a table of how many runs of each map ended in which way, and how well theory knew where they explode."""
+    """Return a table of how the runs of each map ended, and how well theory knew it."""
     lines = []
     for result in results:
-        cells, error = "".join(result.values["measured"]), "-" if result.error is None else f"{result.error:.1%}"
-        counts = (str(cells.count(str(outcome))) for outcome in range(len(SHADES)))
-        lines.append((result.name, *counts, f"{result.values['same']:.1%}", error + FAILED[result.passed]))
-    return Table("Maps of timestep", ("map", *SHADES, "cells as predicted", "border off by"), lines)
+        cells = "".join(result.values["measured"])
+        counts = [str(cells.count(str(outcome))) for outcome in range(len(SHADES))]
+        error = "-" if result.error is None else f"{result.error:.1%}"
+        same = f"{result.values['same']:.1%}"
+        lines.append((result.name, *counts, same, error + FAILED[result.passed]))
+    columns = ("map", *SHADES, "cells as predicted", "border off by")
+    return Table("Maps of timestep", columns, lines)
 
 
-def load(path: pathlib.Path = SHIPPED) -> dict[str, Any]:
-    """Return the maps of a study with its command, its machine and a date, from the file that it wrote."""
-    return json.loads(path.read_text(encoding="utf-8"))
+def from_result(result: Result) -> StabilityMap:
+    """Return the map that a check has measured."""
+    assert result.error is not None, "every map has a worst border"
+    return _from_json({"name": result.name, "worst": result.error, **result.values})
 
 
-def summary(maps: Sequence[dict[str, Any]]) -> tuple[int, float]:
+def _from_json(row: dict[str, Any]) -> StabilityMap:
+    """Return a map from its row in a document."""
+    return StabilityMap(
+        name=row["name"],
+        worst=row["worst"],
+        family=row["family"],
+        integrator=row["integrator"],
+        same=row["same"],
+        timesteps=row["timesteps"],
+        values=row["values"],
+        measured=row["measured"],
+        boundaries=[Border(*pair) for pair in row["boundaries"]],
+    )
+
+
+def load(path: pathlib.Path = SHIPPED) -> StoredMaps:
+    """Return the maps in the file that a study wrote."""
+    content = json.loads(path.read_text(encoding="utf-8"))
+    maps = [_from_json(row) for row in content[MAPS]]
+    return StoredMaps(
+        command=content["command"],
+        settings=content["settings"],
+        machine=content["machine"],
+        date=content["date"],
+        maps=maps,
+    )
+
+
+def summary(maps: Sequence[StabilityMap]) -> tuple[int, float]:
     """Return the number of runs in some maps, and the relative error of the worst border."""
-    return sum(len("".join(of["measured"])) for of in maps), max(of["worst"] for of in maps)
+    runs = sum(len(row) for one_map in maps for row in one_map.measured)
+    return runs, max(one_map.worst for one_map in maps)
 
 
-def figures(stored: dict[str, Any]) -> dict[str, Callable[[pathlib.Path], None]]:
-    """Return what draws each figure of the maps in a document to a path, with .svg appended, by the figure's name."""
-    maps = {family: [of for of in stored[MAPS] if of["family"] == family] for family in FAMILIES}
-    return {f"stability-{name}": partial(draw, maps=of) for name, of in maps.items() if of}
+def figures(stored: StoredMaps) -> dict[str, Callable[[pathlib.Path], None]]:
+    """Return what draws each figure of maps to a path, with .svg appended, by the figure's name."""
+    drawings = {}
+    for family in FAMILIES:
+        maps = [one_map for one_map in stored.maps if one_map.family == family]
+        if maps:
+            drawings[f"stability-{family}"] = partial(draw, maps=maps)
+    return drawings
 
 
-def draw(path: pathlib.Path, maps: Sequence[dict[str, Any]]) -> None:
+def draw(path: pathlib.Path, maps: Sequence[StabilityMap]) -> None:
     """Write maps of one family side by side, to `path` with .svg appended."""
-    name = maps[0]["family"]
-    family, columns = FAMILIES[name], 3 if len(maps) > 4 else min(2, len(maps))
+    family = FAMILIES[maps[0].family]
+    columns = 3 if len(maps) > 4 else min(2, len(maps))
     rows = math.ceil(len(maps) / columns)
-    size = 3.2 * columns + 0.4, 2.9 * rows + 1.7
-    with chart(path, rows, columns, *size, family.title, family.caption) as panels:
+    width = 3.2 * columns + 0.4
+    height = 2.9 * rows + 1.7
+    with chart(path, rows, columns, width, height, family.title, family.caption) as panels:
         for axes in panels[len(maps) :]:
             axes.set_visible(False)
-        for place, (axes, of) in enumerate(zip(panels, maps, strict=False)):
-            _colour(axes, of, list(SHADES.values()))
-            for border, style in ((1, _THEORY), (0, _MEASURED)):
-                edges = [(edges[border], value) for value, edges in zip(of["values"], of["boundaries"], strict=True)]
-                inside = [edge for edge in edges if edge[0] and of["timesteps"][0] < edge[0] < of["timesteps"][-1]]
-                axes.plot(*zip(*inside, strict=True) if inside else ([], []), **style)
-            axes.set_title(of["integrator"])
-            axes.set_xlabel("timestep h [s]" if place + columns >= len(maps) else "")
-            axes.set_ylabel(family.label if place % columns == 0 else "")
-        handles: list[Artist] = [Patch(facecolor=shade, label=name) for name, shade in SHADES.items()]
-        handles += [Line2D([], [], label="limit of stability, theory", **_THEORY)]
-        handles += [Line2D([], [], label="the same, measured", **_MEASURED)]
+        for place, (axes, one_map) in enumerate(zip(panels, maps, strict=False)):
+            _draw_cells(axes, one_map)
+            predicted = [border.predicted for border in one_map.boundaries]
+            measured = [border.measured for border in one_map.boundaries]
+            _draw_border(axes, one_map, predicted, _THEORY)
+            _draw_border(axes, one_map, measured, _MEASURED)
+            axes.set_title(one_map.integrator)
+            is_lowest = place + columns >= len(maps)
+            axes.set_xlabel("timestep h [s]" if is_lowest else "")
+            is_first = place % columns == 0
+            axes.set_ylabel(family.label if is_first else "")
+        handles: list[Artist] = []
+        for name, shade in SHADES.items():
+            handles.append(Patch(facecolor=shade, label=name))
+        handles.append(Line2D([], [], label="limit of stability, theory", **_THEORY))
+        handles.append(Line2D([], [], label="the same, measured", **_MEASURED))
         name_below(panels, 3, handles)
 
 
-def _colour(axes: Axes, of: dict[str, Any], shades: Sequence[str]) -> None:
-    """Draw the cells of a map, whose edges are half-way between its values on the logarithmic axes."""
-    edges = []
-    for values in (np.log(of["timesteps"]), np.log(of["values"])):
-        half = (values[1] - values[0]) / 2
-        edges.append(np.exp(np.append(values - half, values[-1] + half)))
-    style: dict[str, Any] = {"cmap": ListedColormap(shades), "vmin": 0, "vmax": len(shades) - 1, "rasterized": True}
-    axes.pcolormesh(*edges, [[int(cell) for cell in row] for row in of["measured"]], **style)
+def _draw_border(
+    axes: Axes, one_map: StabilityMap, timesteps: Sequence[float | None], style: dict[str, Any]
+) -> None:
+    """Draw a border where it lies inside the map."""
+    least = one_map.timesteps[0]
+    largest = one_map.timesteps[-1]
+    x = []
+    y = []
+    for timestep, value in zip(timesteps, one_map.values, strict=True):
+        if timestep is not None and least < timestep < largest:
+            x.append(timestep)
+            y.append(value)
+    axes.plot(x, y, **style)
+
+
+def _draw_cells(axes: Axes, one_map: StabilityMap) -> None:
+    """Draw the cells, whose edges are half-way between their values on the logarithmic axes."""
+    outcomes = [[int(cell) for cell in row] for row in one_map.measured]
+    colours = ListedColormap(list(SHADES.values()))
+    axes.pcolormesh(
+        _edges(one_map.timesteps),
+        _edges(one_map.values),
+        outcomes,
+        cmap=colours,
+        vmin=0,
+        vmax=len(SHADES) - 1,
+        rasterized=True,
+    )
     axes.set(xscale="log", yscale="log")
     axes.minorticks_off()
     axes.grid(visible=False)
+
+
+def _edges(values: Sequence[float]) -> np.ndarray:
+    """Return the edges around values that are even on a logarithmic axis."""
+    logarithms = np.log(values)
+    half = (logarithms[1] - logarithms[0]) / 2
+    return np.exp(np.append(logarithms - half, logarithms[-1] + half))

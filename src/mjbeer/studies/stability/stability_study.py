@@ -1,4 +1,4 @@
-"""The stability study: maps with the borders of linear theory, and a search for runs that are wrong and silent.
+"""The stability study: maps with the borders of linear theory, and a search for silent runs.
 
 The search makes known cases and random ones, and all come before the same judge.
 """
@@ -9,53 +9,77 @@ import math
 import pathlib
 import secrets
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
 from decimal import ROUND_CEILING, Context
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 from rich.console import Console
+from scipy.stats import binomtest
 
+from mjbeer.checks.as_json import document
+from mjbeer.checks.check import Check, Result
 from mjbeer.exceptions import ParameterError
 from mjbeer.model.setting import supported
 from mjbeer.output import files
 from mjbeer.output.terminal import Table
-from mjbeer.paper.checks import Check, Result
 from mjbeer.studies import study as studies
 from mjbeer.studies.stability import stability_maps
-from mjbeer.studies.stability.judge import DOUBTED, JUDGES, REFUSED, RIGHT, SILENT, VERDICTS, judge
+from mjbeer.studies.stability.judge import (
+    JUDGES,
+    REFUSED,
+    RIGHT,
+    UNDETECTED_ERROR,
+    VERDICTS,
+    WARNED,
+    Outcome,
+    judge,
+)
 from mjbeer.studies.stability.known_cases import KnownCase, cases
 from mjbeer.studies.stability.regions import REGIONS, random_trial
 from mjbeer.studies.study import Study
 from mjbeer.theory.record import ERROR
 
 COMMAND = "mjbeer stability"
-UNFINISHED, FINISHED = "unfinished.jsonl", "stability.jsonl"
-"""Files that have the study while it is measured, and when it is whole."""
-KNOWN, RANDOM = "cases", "search"
-"""The groups of a study with known and with random cases."""
+UNFINISHED = "unfinished.jsonl"
+"""File that has the study while it is measured."""
+FINISHED = "stability.jsonl"
+"""File that has the study when it is whole."""
+KNOWN = "cases"
+"""The group of a study with known cases."""
+RANDOM = "search"
+"""The group of a study with random runs."""
 OUTSIDE = "outside the domain"
-"""The kind of random trials whose scene, start or timestep the domain refuses, so that there is no model of them."""
+"""The kind of random trials that the domain refuses, so that they have no model."""
 SIZE = 4 * len(REGIONS)
 """Number of random runs in a batch, which takes some seconds."""
-RUNS, FEW_RUNS = 3000, 250
-"""Least number of random runs in a study and in a quick one."""
-NEEDLESS, ABOVE, TWICE = "doubted, yet right", "above its estimate", "above twice"
-"""Counted besides: runs that warn although their samples are right, which is no fault where a can slips or would be
-pulled; and trusted runs whose error is above what they admit, or above twice that."""
-_RULE_OF_THREE = 3.0
-"""-ln(0.05): where n runs had no fault, a share of faults above 3/n would have shown one with a probability of 95 %."""
+RUNS = 3000
+"""Least number of random runs in a study."""
+FEW_RUNS = 250
+"""The same in a quick study."""
+NEEDLESS = "doubted, yet right"
+"""Counts runs that warn although their samples are right.
+
+That is no fault where a can slips or would be pulled.
+"""
+ABOVE = "above its estimate"
+"""Counts trusted runs whose error is above what they admit."""
+TWICE = "above twice"
+"""Counts trusted runs whose error is above twice what they admit."""
+CONFIDENCE = 0.95
+"""That of the bound of the share of silent runs."""
 FIRST = "first random run"
 """The setting of a study that has the number of its first random run."""
 _SEEDS = 10**9
-"""Number of random runs among which a study draws its first one: development has seen next to none of them."""
+"""Number of random runs among which a study draws its first; development has seen few."""
 _READ = """
-A run is **right** if it is trusted, and phi and u/a stay within 0.01 rad of theory (relative beyond 1 rad), and within
-its tolerance if it has one. It is **refused** if it ends in an error that states the reason, also if its scene is
-outside the domain, and **doubted** if it carries a warning, right or wrong. It is **silent** if it is trusted and
-wrong: there must be none. Two theories that share no code judge a motion without damping; damped ones, liquids and
-attached cans have exact theory alone.
+A run is **right** if it is trusted, and phi and u/a stay within 0.01 rad of theory (relative beyond
+1 rad), and within its tolerance if it has one. It is **refused** if it ends in an error that states
+the reason, also if its scene is outside the domain, and **doubted** if it carries a warning, right
+or wrong. It is **silent** if it is trusted and wrong: there must be none. Two theories that share
+no code judge a motion without damping; damped ones, liquids and attached cans have exact theory
+alone.
 """
 """How to read the tables of the search."""
 
@@ -65,38 +89,53 @@ def plan(quick: bool, first: int) -> list[Check]:
 
     A `quick` study has coarser maps, and fewer random runs.
     """
-    known = [
-        Check(KNOWN, each.name, partial(try_case, each), bound=0, unit="runs", reason="each ends as it must")
-        for each in cases()
-    ]
-    cells, runs = (stability_maps.FEW_CELLS, FEW_RUNS) if quick else (stability_maps.CELLS, RUNS)
-    return [*stability_maps.checks(cells), *known, *random_checks(runs, first)]
+    cells = stability_maps.FEW_CELLS if quick else stability_maps.CELLS
+    runs = FEW_RUNS if quick else RUNS
+    return [*stability_maps.checks(cells), *_known_checks(), *random_checks(runs, first)]
+
+
+def _known_checks() -> list[Check]:
+    """Return a check for each known case."""
+    checks = []
+    for case in cases():
+        ends = partial(try_case, case)
+        reason = "each ends as it must"
+        checks.append(Check(KNOWN, case.name, ends, bound=0, unit="runs", reason=reason))
+    return checks
 
 
 def random_checks(runs: int, number: int) -> list[Check]:
     """Return the checks of at least so many random runs, from a `number` on."""
-    named = {first: f"random runs {first} to {first + SIZE - 1}" for first in range(number, number + runs, SIZE)}
-    reason = "none is wrong and silent"
-    return [Check(RANDOM, name, partial(batch, first), "", 0, "runs", reason) for first, name in named.items()]
+    checks = []
+    for first in range(number, number + runs, SIZE):
+        name = f"random runs {first} to {first + SIZE - 1}"
+        reason = "none is wrong and silent"
+        checks.append(
+            Check(RANDOM, name, partial(batch, first), bound=0, unit="runs", reason=reason)
+        )
+    return checks
 
 
 def try_case(case: KnownCase) -> dict[str, Any]:
     """Return how the variants of a known case ended; "error" counts the wrong ends."""
     runs = []
-    for each in case.variants:
-        outcome = judge(each.trial)
-        good = outcome.verdict != SILENT and outcome.error <= each.within
-        if not supported(each.trial.scene, each.trial.rolling):
-            good = outcome.verdict == REFUSED
-        runs.append({"setting": each.setting, "as it must": good} | asdict(outcome))
-    return {"error": sum(not run["as it must"] for run in runs), "why": case.why, "runs": runs}
+    for variant in case.variants:
+        outcome = judge(variant.trial)
+        if supported(variant.trial.scene, variant.trial.rolling):
+            as_it_must = outcome.verdict != UNDETECTED_ERROR and outcome.error <= variant.within
+        else:
+            as_it_must = outcome.verdict == REFUSED
+        runs.append({"setting": variant.setting, "as it must": as_it_must, **asdict(outcome)})
+    wrong = sum(not run["as it must"] for run in runs)
+    return {"error": wrong, "why": case.why, "runs": runs}
 
 
 def batch(first: int, size: int = SIZE) -> dict[str, Any]:
-    """Return how the random runs from the number `first` on ended; "error" counts those that are wrong and silent.
+    """Return how the random runs from the number `first` on ended.
 
-    "kinds" has the counts by kind of model, with what judged the runs, and counts those `OUTSIDE` the domain as
-    refused; "silent" has all that is known of those that must not be.
+    "error" counts those that are wrong and silent, and "silent" has all that is known of them.
+    "kinds" has the counts by kind of model, with what judged the runs, and counts those `OUTSIDE`
+    the domain as refused.
     """
     kinds: dict[str, Counter[str]] = {}
     silent = []
@@ -107,92 +146,143 @@ def batch(first: int, size: int = SIZE) -> dict[str, Any]:
             kinds.setdefault(OUTSIDE, Counter())[REFUSED] += 1
             continue
         outcome = judge(trial)
-        trusted = outcome.verdict == RIGHT
-        counted = {
-            outcome.verdict: True,
-            outcome.judged_by: True,
-            NEEDLESS: outcome.verdict == DOUBTED and outcome.error <= ERROR,
-            ABOVE: trusted and outcome.error > outcome.admitted,
-            TWICE: trusted and outcome.error > 2 * outcome.admitted,
-        }
-        kinds.setdefault(trial.kind, Counter()).update(name for name, holds in counted.items() if holds and name)
-        if outcome.verdict == SILENT:
+        kinds.setdefault(trial.kind, Counter()).update(_counted(outcome))
+        if outcome.verdict == UNDETECTED_ERROR:
             region = REGIONS[number % len(REGIONS)].name
-            silent.append({"number": number, "region": region, **asdict(outcome), "trial": repr(trial)})
-    return {"error": len(silent), "kinds": {kind: dict(of) for kind, of in kinds.items()}, "silent": silent}
+            run = {"number": number, "region": region, **asdict(outcome), "trial": repr(trial)}
+            silent.append(run)
+    counts = {kind: dict(counter) for kind, counter in kinds.items()}
+    return {"error": len(silent), "kinds": counts, "silent": silent}
 
 
-def totals(results: Iterable[Result]) -> dict[str, Any]:
-    """Return the counts of a study's runs, as numbers: of known cases, and of random ones by kind of model and all."""
-    known, kinds = Counter[str](), dict[str, Counter[str]]()
+def _counted(outcome: Outcome) -> list[str]:
+    """Return the names of all that an outcome counts as."""
+    names = []
+    if outcome.verdict:
+        names.append(outcome.verdict)
+    if outcome.judged_by:
+        names.append(outcome.judged_by)
+    if outcome.verdict == WARNED and outcome.error <= ERROR:
+        names.append(NEEDLESS)
+    if outcome.verdict == RIGHT and outcome.error > outcome.admitted:
+        names.append(ABOVE)
+    if outcome.verdict == RIGHT and outcome.error > 2 * outcome.admitted:
+        names.append(TWICE)
+    return names
+
+
+class Totals(NamedTuple):
+    """How often runs ended in which way."""
+
+    known: Mapping[str, int]
+    """Of known cases, by verdict."""
+    kinds: Mapping[str, Mapping[str, int]]
+    """Of random runs, by kind of model, and of "all": by verdict, by judge, and what else counts.
+    """
+
+
+def totals(results: Iterable[Result]) -> Totals:
+    """Return the counts of a study's runs."""
+    known = Counter[str]()
+    kinds: dict[str, Counter[str]] = {}
     for result in results:
         if result.group == KNOWN:
             known.update(run["verdict"] for run in result.values["runs"])
         elif result.group == RANDOM:
             for kind, counts in result.values["kinds"].items():
                 kinds.setdefault(kind, Counter()).update(counts)
-    ordered = dict(sorted(kinds.items())) | {"all": sum(kinds.values(), Counter())}
-    return {"known": dict(known), "kinds": {kind: dict(of) for kind, of in ordered.items()}}
+    ordered = {kind: dict(kinds[kind]) for kind in sorted(kinds)}
+    every = sum(kinds.values(), Counter())
+    return Totals(dict(known), ordered | {"all": dict(every)})
 
 
-def bound(counts: dict[str, int]) -> float | None:
-    """Return an upper bound, at 95 % confidence, of the share of trusted runs that are silent: 3/n of n trusted runs.
+def bound(counts: Mapping[str, int]) -> float | None:
+    """Return an upper bound of the share of trusted runs that are silent, exact for chance.
 
-    None if some run was silent, or none was trusted.
+    It is that of C. Clopper and E. Pearson at a confidence of `CONFIDENCE`: near 3/n if none of n
+    trusted runs is silent. None if no run was trusted.
     """
-    trusted = counts.get(RIGHT, 0)
-    if counts.get(SILENT) or not trusted:
+    silent = counts.get(UNDETECTED_ERROR, 0)
+    trusted = silent + counts.get(RIGHT, 0)
+    if trusted == 0:
         return None
-    return _RULE_OF_THREE / trusted
+    test = binomtest(silent, trusted, alternative="less")
+    return float(test.proportion_ci(CONFIDENCE, method="exact").high)
 
 
 def rounded_up(share: float) -> str:
-    """Return an upper bound of a share with two digits, rounded up: rounded down, it would claim too much."""
+    """Return an upper bound with two digits, rounded up: rounded down, it would claim too much."""
     return f"{Context(prec=2, rounding=ROUND_CEILING).create_decimal(share):f}"
 
 
-def search_tables(found: dict[str, Any], results: Sequence[Result] = ()) -> list[Table]:
-    """Return the tables of a search from its totals: known cases, random ones, and the silent runs of `results`."""
-    columns, last = (*VERDICTS, *JUDGES, NEEDLESS, ABOVE, TWICE), "silent share of trusted runs at most, at 95 %"
-    kinds = []
-    for name, counts in found["kinds"].items():
-        runs, share = sum(counts.get(verdict, 0) for verdict in VERDICTS), bound(counts)
-        cells = (str(counts.get(column, 0)) for column in columns)
-        kinds.append((name, str(runs), *cells, "-" if share is None else rounded_up(share)))
-    silent = [run for of in results for run in of.values.get("silent", ())]
-    wrong = [(str(run["number"]), run["region"], f"{run['error']:.1e}", run["trial"]) for run in silent]
-    known = ("all", str(sum(found["known"].values())), *(str(found["known"].get(verdict, 0)) for verdict in VERDICTS))
-    made = [
-        Table("Known cases", ("cases", "runs", *VERDICTS), [known]),
-        Table("Random runs, by model and by what judged them", ("model", "runs", *columns, last), kinds),
-        Table("Silent runs, which must not be", ("number", "region", "error [rad]", "trial"), wrong, left=(0, 1, 3)),
+def search_tables(found: Totals, results: Sequence[Result] = ()) -> list[Table]:
+    """Return the tables of a search: known cases, random runs, and the silent runs of `results`."""
+    known = [str(found.known.get(verdict, 0)) for verdict in VERDICTS]
+    all_known = ("all", str(sum(found.known.values())), *known)
+    tables = [
+        Table("Known cases", ("cases", "runs", *VERDICTS), [all_known]),
+        _table_of_kinds(found.kinds),
+        _table_of_silent_runs(results),
     ]
-    return [table for table in made if table.rows]
+    return [table for table in tables if table.rows]
+
+
+def _table_of_kinds(kinds: Mapping[str, Mapping[str, int]]) -> Table:
+    """Return a table with a line a kind of model: how random runs ended, and what judged them."""
+    counted = (*VERDICTS, *JUDGES, NEEDLESS, ABOVE, TWICE)
+    last = "silent share of trusted runs at most, at 95 %"
+    rows = []
+    for kind, counts in kinds.items():
+        runs = sum(counts.get(verdict, 0) for verdict in VERDICTS)
+        cells = [str(counts.get(name, 0)) for name in counted]
+        share = bound(counts)
+        rows.append((kind, str(runs), *cells, "-" if share is None else rounded_up(share)))
+    title = "Random runs, by model and by what judged them"
+    return Table(title, ("model", "runs", *counted, last), rows)
+
+
+def _table_of_silent_runs(results: Sequence[Result]) -> Table:
+    """Return a table with a line a silent run."""
+    rows = []
+    for result in results:
+        for run in result.values.get("silent", ()):
+            rows.append((str(run["number"]), run["region"], f"{run['error']:.1e}", run["trial"]))
+    columns = ("number", "region", "error [rad]", "trial")
+    return Table("Silent runs, which must not be", columns, rows, left=(0, 1, 3))
 
 
 def _table_of_cases(results: Sequence[Result]) -> Table:
-    """Return a table with a line a known case: how its runs ended, with the largest error of each way, and why."""
+    """Return a table with a line a known case: how its runs ended, with the largest errors."""
     rows = []
     for result in results:
-        ended = []
-        for verdict in VERDICTS:
-            runs = [run for run in result.values["runs"] if run["verdict"] == verdict]
-            errors = [run["error"] for run in runs if run["error"] not in (None, math.inf)]
-            ended.append(f"{len(runs)}" + (f" ({max(errors):.0e})" if errors else ""))
-        rows.append((result.name, *ended, result.values["why"]))
-    columns = ("case", *VERDICTS, "why it is one")
-    return Table("Known cases: runs, and the largest error [rad]", columns, rows, left=(0, 5))
+        cells = [_ended(result.values["runs"], verdict) for verdict in VERDICTS]
+        rows.append((result.name, *cells, result.values["why"]))
+    title = "Known cases: runs, and the largest error [rad]"
+    return Table(title, ("case", *VERDICTS, "why it is one"), rows, left=(0, 5))
 
 
-def conduct(folder: pathlib.Path, quick: bool, console: Console) -> Study:
-    """Measure what the study in `folder` lacks, on all cores, and return the study, kept as unfinished.jsonl.
+def _ended(runs: Sequence[Mapping[str, Any]], verdict: str) -> str:
+    """Return how many runs ended with a verdict, and the largest of their errors."""
+    errors = []
+    count = 0
+    for run in runs:
+        if run["verdict"] == verdict:
+            count += 1
+            if run["error"] not in (None, math.inf):
+                errors.append(run["error"])
+    return f"{count} ({max(errors):.0e})" if errors else f"{count}"
 
-    Its random runs are fresh: the number of the first one is drawn when the study begins, and kept in its settings.
+
+def run(folder: pathlib.Path, quick: bool, console: Console) -> Study:
+    """Measure what the study in `folder` lacks, on all cores, and return the study.
+
+    It is kept in the file `UNFINISHED`. Its random runs are fresh: the number of the first one is
+    drawn when the study begins, and kept in its settings.
 
     Raises:
       OutputError: if the folder cannot be written to.
       OSError: if the system ends one of the processes.
-      ParameterError: if unfinished.jsonl or stability.jsonl is there but is not such a study.
+      ParameterError: if one of the files of the study is there but is not such a study.
     """
     settings = {"quick": quick, FIRST: secrets.randbelow(_SEEDS)}
     for name in (UNFINISHED, FINISHED):
@@ -203,7 +293,8 @@ def conduct(folder: pathlib.Path, quick: bool, console: Console) -> Study:
                 settings |= begun
             break
     checks = plan(quick, settings[FIRST])
-    return studies.run(checks, console, folder / UNFINISHED, COMMAND, settings, finished=folder / FINISHED)
+    unfinished = folder / UNFINISHED
+    return studies.run(checks, console, unfinished, COMMAND, settings, folder / FINISHED)
 
 
 def tables(study: Study) -> list[Table]:
@@ -212,29 +303,28 @@ def tables(study: Study) -> list[Table]:
     return [maps, *search_tables(totals(study.results), study.results)]
 
 
-def to_json(study: Study) -> str:
-    """Return the study as one JSON document: all results, and the totals of the search as numbers."""
-    content = study.about | {"failed": [result.name for result in study.failed]}
-    content |= {"totals": totals(study.results), "results": [result.as_json() for result in study.results]}
-    return json.dumps(content) + "\n"
-
-
 def write(study: Study, folder: pathlib.Path) -> None:
-    """Write stability.jsonl, maps.json, totals.json, the plots of the maps, and summary.md into a folder.
+    """Write the study, its maps and totals, the plots of the maps, and summary.md into a folder.
 
     Raises:
       OutputError: if a file cannot be written.
     """
     study.save(folder / FINISHED)
-    maps = ({"name": of.name, "worst": of.error, **of.values} for of in study.of(stability_maps.MAPS))
-    dated = study.about | {"date": datetime.date.today().isoformat()}
-    files.write(folder / "maps.json", studies.document(dated, stability_maps.MAPS, maps))
-    files.write(folder / "totals.json", json.dumps(study.about | totals(study.results), indent=1) + "\n")
-    count = len(study.failed)
-    verdict = f"**{count} did not come out as they must.**" if count else "All came out as they must."
+    maps = [stability_maps.from_result(result) for result in study.of(stability_maps.MAPS)]
+    about = {**study.about, "date": datetime.date.today().isoformat()}
+    maps_json = document(about, stability_maps.MAPS, [asdict(one_map) for one_map in maps])
+    files.write(folder / "maps.json", maps_json)
+    content = {**study.about, **totals(study.results)._asdict()}
+    files.write(folder / "totals.json", json.dumps(content, indent=1) + "\n")
+    verdict = "All came out as they must."
+    if study.failed:
+        verdict = f"**{len(study.failed)} did not come out as they must.**"
     lines = ["# mjbeer: stability", "", verdict, _READ]
-    for name, draw in stability_maps.figures(stability_maps.load(folder / "maps.json")).items():
+    stored = stability_maps.load(folder / "maps.json")
+    for name, draw in stability_maps.figures(stored).items():
         draw(folder / name)
-        lines += [f"![{name}]({name}.svg)", "", stability_maps.FAMILIES[name.removeprefix("stability-")].caption, ""]
-    lines += [table.markdown() for table in (*tables(study), _table_of_cases(study.of(KNOWN)))]
+        family = stability_maps.FAMILIES[name.removeprefix("stability-")]
+        lines += [f"![{name}]({name}.svg)", "", family.caption, ""]
+    for table in (*tables(study), _table_of_cases(study.of(KNOWN))):
+        lines.append(table.markdown())
     files.write(folder / "summary.md", "\n".join(lines))

@@ -1,13 +1,13 @@
-"""A second exact motion, from the Lagrangian in u and phi by Taylor series; it shares no code with `mjbeer.theory`.
+"""A second exact motion, by Taylor series, which shares no code with `mjbeer.theory`.
 
-A load at the angle phi is at s = u - b sin(phi) along the incline and at -b cos(phi) across it. With
-M = m + m_can + I_can/a^2, and g_s and g_c for gravity along and across the incline,
+A load at the angle phi is at s = u - b sin(phi) along the incline and at -b cos(phi) across it.
+With M = m + m_can + I_can/a^2, and g_s and g_c for gravity along and across the incline,
 
     T = 1/2 (M - m) u'^2 + 1/2 m ((u' - b cos(phi) phi')^2 + (b sin(phi) phi')^2) + 1/2 I phi'^2,
     V = -(m + m_can) g_s u - m b (g_c cos(phi) - g_s sin(phi)).
 
-A sliding load has both coordinates free: (M u - m b sin(phi))'' = (m + m_can) g_s, and with u'' eliminated, so that
-nothing is left that cancels,
+A sliding load has both coordinates free: (M u - m b sin(phi))'' = (m + m_can) g_s, and with u''
+eliminated, so that nothing is left that cancels,
 
     (M I + m b^2 (M - m) + (m b sin(phi))^2) phi''
       = -m b (M g_c sin(phi) + I_can/a^2 g_s cos(phi)) - (m b)^2 sin(phi) cos(phi) phi'^2.
@@ -21,12 +21,13 @@ With s = sin(f phi), c = cos(f phi) and v = phi' both have the form
 
     phi'' = (t0 + t1 s^2 + n1 s + n2 c - (t2 + t3 v^2) s c) / (d0 + d1 s^2).
 
-The coefficients of the power series of phi(t) follow one after the other from those of s, c and v (A. Jorba and
-M. Zou, A software package for the numerical integration of ODEs by means of high-order Taylor methods, Experimental
-Mathematics 14, 2005).
+The coefficients of the power series of phi(t) follow one after the other from those of s, c and v
+(A. Jorba and M. Zou, A software package for the numerical integration of ODEs by means of
+high-order Taylor methods, Experimental Mathematics 14, 2005).
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -38,68 +39,145 @@ from mjbeer.theory.scene import Scene
 MOST_STEPS = 400_000
 """Largest number of steps of a motion, which take some two seconds. A swing takes about twenty."""
 _ORDER = 28
-"""Order of the series. Between 24 and 32 the run time for a given error is the same within a tenth."""
+"""Order of the series. Between 24 and 32 the run time for a given error is the same within 10 %."""
 _TAIL = 1e-18
-"""Size of the last terms of a step relative to the rate: a hundredth of the rounding of a double."""
+"""Size of the last terms of a step relative to the rate: 1 % of the rounding of a double."""
 _LAST = 3
 """Number of last terms that must be small: one or two may be small by chance."""
 
 
-def series(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float = 0.0) -> Coordinates:
-    """Return the undamped motion at increasing `times` [s] from `phi0` [rad] with `phi_dot0` [rad/s] at time 0.
+class Law(NamedTuple):
+    """The coefficients of phi'' as above, in a unit of time; s = sin(f phi) has the factor f."""
 
-    A sliding load starts at s = 0 with s' = 0, a frozen one at u = a phi. The unit of time is a power of two near the
-    fastest time of the motion, so that no conversion is rounded, and no coefficient overflows.
+    factor: float
+    t0: float
+    t1: float
+    n1: float
+    n2: float
+    t2: float
+    t3: float
+    d0: float
+    d1: float
+
+
+def series(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float = 0.0) -> Coordinates:
+    """Return the undamped motion at increasing `times` [s].
+
+    It starts from `phi0` [rad] with `phi_dot0` [rad/s] at time 0: a sliding load at s = 0 with
+    s' = 0, a frozen one at u = a phi. The unit of time is a power of two near the fastest time of
+    the motion, so that no conversion is rounded, and no coefficient overflows.
 
     Raises:
       ToleranceError: if the motion takes more than `MOST_STEPS` steps.
     """
-    can, load, time = scene.can, scene.load, np.asarray(times, dtype=float)
-    pace = abs(phi_dot0) + math.sqrt(scene.gravity / can.radius)
-    unit = 2.0 ** math.frexp(1 / pace)[1] if pace > 0 else 1.0
-    a, b, m, m_can, inertia = can.radius, load.offset, load.mass, can.mass, load.inertia
-    g_s, g_c = (scene.gravity * unit**2 * part(scene.incline) for part in (math.sin, math.cos))
-    if sliding := scene.attachment == "sliding":
-        rim = can.inertia / a**2
+    time = np.asarray(times, dtype=float)
+    radius = scene.can.radius
+    fastest = abs(phi_dot0) + math.sqrt(scene.gravity / radius)  # [rad/s]
+    unit = 2.0 ** math.frexp(1 / fastest)[1] if fastest > 0 else 1.0
+    law = _law(scene, unit)
+    samples = np.empty((len(time), 2))
+    if not _integrate(law, phi0, phi_dot0 * unit, time / unit, samples, MOST_STEPS):
+        raise ToleranceError(f"the motion takes more than {MOST_STEPS} steps")
+    phi = samples[:, 0]
+    phi_dot = samples[:, 1] / unit
+    if scene.attachment == "sliding":
+        u, u_dot = _sliding_axis(scene, time, phi, phi_dot, phi0, phi_dot0)
+    else:
+        u = radius * phi
+        u_dot = radius * phi_dot
+    return Coordinates(
+        time=time,
+        u=u,
+        u_dot=u_dot,
+        lift=0 * u,
+        lift_dot=0 * u,
+        phi=phi,
+        phi_dot=phi_dot,
+        roll=u / radius,
+        roll_dot=u_dot / radius,
+    )
+
+
+def _law(scene: Scene, unit: float) -> Law:
+    """Return the law of a scene in a unit of time [s]."""
+    a = scene.can.radius
+    m_can = scene.can.mass
+    b = scene.load.offset
+    m = scene.load.mass
+    g_s = scene.gravity * unit**2 * math.sin(scene.incline)
+    g_c = scene.gravity * unit**2 * math.cos(scene.incline)
+    if scene.attachment == "sliding":
+        rim = scene.can.inertia / a**2
         total = m + m_can + rim
         square = (m * b) ** 2 / total
-        moments = inertia + m * b**2 * (m_can + rim) / total, square
-        form = (1.0, 0.0, 0.0, -m * b * g_c, -m * b * rim * g_s / total, 0.0, square, *moments)
-    else:
-        moments = inertia + can.inertia + m_can * a**2 + m * (a - b) ** 2, 4 * m * b * a
-        push = g_s * (m_can * a + m * (a - b)), 2 * m * b * g_s
-        form = (0.5, *push, 0.0, 0.0, 2 * m * b * g_c, 2 * m * b * a, *moments)
-    samples = np.empty((len(time), 2))
-    if not _integrate(form, phi0, phi_dot0 * unit, time / unit, samples, MOST_STEPS):
-        raise ToleranceError(f"the motion takes more than {MOST_STEPS} steps")
-    phi, phi_dot = samples[:, 0], samples[:, 1] / unit
-    u, u_dot = can.radius * phi, can.radius * phi_dot
-    if sliding:  # M u - m b sin(phi) falls freely from its value at the start
-        rest = m_can + can.inertia / a**2
-        place, speed = rest * b * math.sin(phi0), rest * b * math.cos(phi0) * phi_dot0
-        fall = (m + m_can) * scene.gravity * math.sin(scene.incline)
-        u = (place + speed * time + fall * time**2 / 2 + m * b * np.sin(phi)) / (m + rest)
-        u_dot = (speed + fall * time + m * b * np.cos(phi) * phi_dot) / (m + rest)
-    angles = {"phi": phi, "phi_dot": phi_dot, "roll": u / can.radius, "roll_dot": u_dot / can.radius}
-    return Coordinates(time=time, u=u, u_dot=u_dot, lift=0 * u, lift_dot=0 * u, **angles)
+        return Law(
+            factor=1.0,
+            t0=0.0,
+            t1=0.0,
+            n1=-m * b * g_c,
+            n2=-m * b * rim * g_s / total,
+            t2=0.0,
+            t3=square,
+            d0=scene.load.inertia + m * b**2 * (m_can + rim) / total,
+            d1=square,
+        )
+    return Law(
+        factor=0.5,
+        t0=g_s * (m_can * a + m * (a - b)),
+        t1=2 * m * b * g_s,
+        n1=0.0,
+        n2=0.0,
+        t2=2 * m * b * g_c,
+        t3=2 * m * b * a,
+        d0=scene.load.inertia + scene.can.inertia + m_can * a**2 + m * (a - b) ** 2,
+        d1=4 * m * b * a,
+    )
+
+
+def _sliding_axis(
+    scene: Scene,
+    time: np.ndarray,
+    phi: np.ndarray,
+    phi_dot: np.ndarray,
+    phi0: float,
+    phi_dot0: float,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return u [m] and u' [m/s]: M u - m b sin(phi) falls freely from its value at the start."""
+    b = scene.load.offset
+    m = scene.load.mass
+    rest = scene.can.mass + scene.can.inertia / scene.can.radius**2
+    place = rest * b * math.sin(phi0)
+    speed = rest * b * math.cos(phi0) * phi_dot0
+    fall = (m + scene.can.mass) * scene.gravity * math.sin(scene.incline)
+    u = (place + speed * time + fall * time**2 / 2 + m * b * np.sin(phi)) / (m + rest)
+    u_dot = (speed + fall * time + m * b * np.cos(phi) * phi_dot) / (m + rest)
+    return u, u_dot
 
 
 @njit(cache=True)
-def _integrate(form, phi0, phi_dot0, times, samples, most):
-    """Fill `samples` with phi and phi' at increasing `times`; return whether at most so many steps were enough.
+def _integrate(law, phi0, phi_dot0, times, samples, most):
+    """Fill `samples` with phi and phi' at increasing `times`; return whether `most` steps sufficed.
 
-    What a step adds is computed in doubles. The sums over all steps are kept as pairs of doubles, so that their
-    rounding does not add up.
+    What a step adds is computed in doubles. The sums over all steps are kept as pairs of doubles,
+    so that their rounding does not add up.
     """
-    phi, s, c = np.zeros(_ORDER + 1), np.zeros(_ORDER + 1), np.zeros(_ORDER + 1)
+    phi = np.zeros(_ORDER + 1)
+    s = np.zeros(_ORDER + 1)
+    c = np.zeros(_ORDER + 1)
     work = np.zeros((4, _ORDER + 1))
-    factor, sample = form[0], 0
-    angle, angle_low, rate, rate_low, now, now_low = phi0, 0.0, phi_dot0, 0.0, 0.0, 0.0
+    factor = law.factor
+    sample = 0
+    angle, angle_low = phi0, 0.0
+    rate, rate_low = phi_dot0, 0.0
+    now, now_low = 0.0, 0.0
     for _ in range(most):
-        sine, cosine = math.sin(factor * angle), math.cos(factor * angle)
-        s[0], c[0] = sine + cosine * factor * angle_low, cosine - sine * factor * angle_low
-        phi[0], phi[1] = angle, rate + rate_low
-        _expand(form, phi, s, c, work)
+        sine = math.sin(factor * angle)
+        cosine = math.cos(factor * angle)
+        s[0] = sine + cosine * factor * angle_low
+        c[0] = cosine - sine * factor * angle_low
+        phi[0] = angle
+        phi[1] = rate + rate_low
+        _expand(law, phi, s, c, work)
         step = (times[-1] - now) - now_low
         pace = abs(phi[1]) + math.sqrt(abs(2 * phi[2]))
         for k in range(_ORDER - _LAST, _ORDER):
@@ -110,7 +188,8 @@ def _integrate(form, phi0, phi_dot0, times, samples, most):
             if time > step:
                 break
             turned, gained = _move(phi, time)
-            samples[sample, 0], samples[sample, 1] = angle + (angle_low + turned), rate + (rate_low + gained)
+            samples[sample, 0] = angle + (angle_low + turned)
+            samples[sample, 1] = rate + (rate_low + gained)
             sample += 1
         if sample == len(times):
             return True
@@ -122,28 +201,32 @@ def _integrate(form, phi0, phi_dot0, times, samples, most):
 
 
 @njit(cache=True)
-def _expand(form, phi, s, c, work):
-    """Fill the series of phi, s and c in time; their first coefficients (two of phi) must be there."""
-    factor, t0, t1, n1, n2, t2, t3, d0, d1 = form
-    vv, ss, sc, acceleration = work
+def _expand(law, phi, s, c, work):
+    """Fill the series of phi, s and c in time from their first coefficients (two of phi)."""
+    vv = work[0]
+    ss = work[1]
+    sc = work[2]
+    acceleration = work[3]
     for k in range(_ORDER - 1):
         if k > 0:
             sine = cosine = 0.0
             for j in range(1, k + 1):
                 sine += j * phi[j] * c[k - j]
                 cosine += j * phi[j] * s[k - j]
-            s[k], c[k] = factor * sine / k, -factor * cosine / k
+            s[k] = law.factor * sine / k
+            c[k] = -law.factor * cosine / k
         vv[k] = ss[k] = sc[k] = 0.0
         for j in range(k + 1):
             vv[k] += (j + 1) * phi[j + 1] * (k - j + 1) * phi[k - j + 1]
             ss[k] += s[j] * s[k - j]
             sc[k] += s[j] * c[k - j]
-        rest = t1 * ss[k] + n1 * s[k] + n2 * c[k] - t2 * sc[k] + (t0 if k == 0 else 0.0)
+        rest = law.t1 * ss[k] + law.n1 * s[k] + law.n2 * c[k] - law.t2 * sc[k]
+        rest += law.t0 if k == 0 else 0.0
         for j in range(k + 1):
-            rest -= t3 * vv[j] * sc[k - j]
+            rest -= law.t3 * vv[j] * sc[k - j]
             if j > 0:
-                rest -= d1 * ss[j] * acceleration[k - j]
-        acceleration[k] = rest / (d0 + d1 * ss[0])
+                rest -= law.d1 * ss[j] * acceleration[k - j]
+        acceleration[k] = rest / (law.d0 + law.d1 * ss[0])
         phi[k + 2] = acceleration[k] / ((k + 1) * (k + 2))
 
 
@@ -159,7 +242,7 @@ def _move(phi, time):
 
 @njit(cache=True)
 def _add(high, low, more):
-    """Return the sum of a pair of doubles and a double, as a pair whose second double is the rounding of the first."""
+    """Return the sum of a pair of doubles and a double, as a pair: the sum and its rounding."""
     total = high + more
     part = total - high
     rounding = (high - (total - part)) + (more - part) + low

@@ -1,1 +1,1 @@
-"""`mjbeer validate`: checks of every model against exact theory, together with the audit of the paper."""
+"""`mjbeer validate`: checks of every model against exact theory, and the audit of the paper."""

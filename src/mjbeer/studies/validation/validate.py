@@ -1,12 +1,13 @@
-"""validate(): measure every check against theory and every claim of the paper; the tables of both."""
+"""validate(): measure every check and every claim of the paper; the tables of both."""
 
 from dataclasses import dataclass
 
 from rich.console import Console
 
 from mjbeer import paper
+from mjbeer.checks.as_json import to_json
+from mjbeer.checks.check import Check, Result
 from mjbeer.output.terminal import Table, progress_bar
-from mjbeer.paper.checks import Check, Result, to_json
 from mjbeer.studies.study import FAILED, machine
 from mjbeer.studies.validation import motion_checks, standing_checks, track_checks
 
@@ -23,7 +24,9 @@ class Validation:
     @property
     def failures(self) -> list[str]:
         """A line for each check and each claim that failed."""
-        return [result.summary_line() for result in (*self.results, *self.audit) if not result.passed]
+        return [
+            result.summary_line() for result in (*self.results, *self.audit) if not result.passed
+        ]
 
     @property
     def passed(self) -> bool:
@@ -33,41 +36,54 @@ class Validation:
     @property
     def sentence(self) -> str:
         """How many checks and how many claims passed."""
-        checks, claims = (sum(result.passed for result in listed) for listed in (self.results, self.audit))
-        total = len(self.results), len(self.audit)
-        return f"{checks} of {total[0]} checks and {claims} of {total[1]} claims of the paper passed"
+        checks = sum(result.passed for result in self.results)
+        claims = sum(result.passed for result in self.audit)
+        return (
+            f"{checks} of {len(self.results)} checks and "
+            f"{claims} of {len(self.audit)} claims of the paper passed"
+        )
 
     def tables(self) -> list[Table]:
         """Return the tables of the checks and of the audit."""
         rows = []
-        for each in self.results:
-            error, bound = _error(each) + FAILED[each.passed], f"{each.bound:.1e} {each.unit}".strip()
-            rows.append((each.name, each.by, error, bound, each.reason))
-        columns = "check", "by", "error", "at most", "what dominates the error"
-        return [Table("Validation against exact theory", columns, rows, left=(0, 1, 4)), audit(self.audit)]
+        for result in self.results:
+            error = _error(result) + FAILED[result.passed]
+            bound = f"{result.bound:.1e} {result.unit}".strip()
+            rows.append((result.name, result.by, error, bound, result.reason))
+        columns = ("check", "by", "error", "at most", "what dominates the error")
+        checks = Table("Validation against exact theory", columns, rows, left=(0, 1, 4))
+        return [checks, audit(self.audit)]
 
     def json(self) -> str:
         """Return the results as JSON, with the versions of the packages that were used."""
-        listed = {
-            name: [vars(result) | {"passed": result.passed} for result in results]
-            for name, results in (("checks", self.results), ("audit", self.audit))
+        content = {
+            "versions": machine()["versions"],
+            "passed": self.passed,
+            "checks": [{**vars(result), "passed": result.passed} for result in self.results],
+            "audit": [{**vars(result), "passed": result.passed} for result in self.audit],
         }
-        content = {"versions": machine()["versions"], "passed": self.passed, **listed}
         return to_json(content, indent=2)
 
 
 def checks() -> list[Check]:
     """Return all checks of the validation, in the order of its table."""
-    motions = motion_checks.checks, motion_checks.damped, motion_checks.orders
-    return [check for chapter in (*motions, standing_checks.checks, track_checks.checks) for check in chapter()]
+    return [
+        *motion_checks.checks(),
+        *motion_checks.damped(),
+        *motion_checks.orders(),
+        *standing_checks.checks(),
+        *track_checks.checks(),
+    ]
 
 
 def validate(console: Console | None) -> Validation:
-    """Measure every check and every claim, and return the results; `console` shows a progress bar."""
-    listed, claims = checks(), paper.claims()
-    results, audited = [], []
-    with progress_bar(console, len(listed) + len(claims)) as begin:
-        for check in listed:
+    """Measure every check and every claim; `console` shows a progress bar."""
+    all_checks = checks()
+    claims = paper.claims()
+    results = []
+    audited = []
+    with progress_bar(console, len(all_checks) + len(claims)) as begin:
+        for check in all_checks:
             begin(f"{check.name} ({check.by})")
             results.append(check.result())
         for claim in claims:
@@ -77,17 +93,28 @@ def validate(console: Console | None) -> Validation:
 
 
 def audit(results: list[Result]) -> Table:
-    """Return the table of the audit, with the verdicts, the witnesses, and what dominates each error."""
+    """Return the table of the audit: verdicts, witnesses, and what dominates each error."""
     lines = []
-    for each in results:
-        printed, right = each.values.get("printed"), _error(each)
-        errors = (right, "") if printed is None else (f"{printed:.2g}", right)
-        bound = f"{each.bound:.1e}" + FAILED[each.passed]
-        lines.append((each.group, each.name, each.values["verdict"], each.by, *errors, bound, each.reason))
-    columns = "equation", "quantity", "verdict", "witness", "error, printed", "error, right"
-    title = "The paper, equation by equation"
-    return Table(title, (*columns, "at most", "what dominates"), lines, left=(0, 1, 2, 3, 7))
+    for result in results:
+        printed = result.values.get("printed")
+        errors = (_error(result), "") if printed is None else (f"{printed:.2g}", _error(result))
+        bound = f"{result.bound:.1e}" + FAILED[result.passed]
+        verdict = result.values["verdict"]
+        heading = (result.group, result.name, verdict, result.by)
+        lines.append((*heading, *errors, bound, result.reason))
+    columns = (
+        "equation",
+        "quantity",
+        "verdict",
+        "witness",
+        "error, printed",
+        "error, right",
+        "at most",
+        "what dominates",
+    )
+    return Table("The paper, equation by equation", columns, lines, left=(0, 1, 2, 3, 7))
 
 
 def _error(result: Result) -> str:
+    """Return an error with two digits."""
     return "-" if result.error is None else f"{result.error:.1e}"

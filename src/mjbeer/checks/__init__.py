@@ -1,0 +1,1 @@
+"""Checks and their results, also as JSON, for the paper, the validation and the studies."""

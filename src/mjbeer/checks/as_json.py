@@ -1,0 +1,32 @@
+"""Results as JSON, which has no infinity and no NaN: both become null."""
+
+import json
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+
+def json_values(content: Any) -> Any:
+    """Return content as JSON has it, in which infinity and NaN are None."""
+    return json.loads(json.dumps(content), parse_constant=lambda _: None)
+
+
+def to_json(content: Any, indent: int | None = None) -> str:
+    """Return content as JSON, in one line unless it is indented."""
+    return json.dumps(json_values(content), indent=indent) + "\n"
+
+
+def document(about: Mapping[str, Any], name: str, rows: Iterable[Mapping[str, Any]]) -> str:
+    """Return as JSON what a study is about, and its rows under a name, one a line.
+
+    The numbers in the rows have six digits.
+    """
+    lines = []
+    for row in rows:
+        rounded = json.loads(to_json(row), parse_float=_six_digits)
+        lines.append(json.dumps(rounded))
+    head = json.dumps(about).removesuffix("}")
+    return f'{head}, "{name}": [\n' + ",\n".join(lines) + "\n]}\n"
+
+
+def _six_digits(number: str) -> float:
+    return float(f"{float(number):.6g}")
