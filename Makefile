@@ -59,6 +59,7 @@ portability: $(TOOLS)
 renders: $(PACKAGE)
 	$(BIN)/python docs/figures/renders.py renders
 	$(BIN)/python docs/figures/carry.py
+	$(BIN)/python docs/figures/grasp.py
 	$(BIN)/python docs/figures/gauss_jackson.py
 
 templates: $(PACKAGE)

@@ -80,6 +80,7 @@ VALUES: dict[str, Callable[[], object]] = {
 MOTION = exact(frozen(), np.linspace(0, 0.1, 11), 1.0)
 RUN = simulate(frozen(), 0.01, 1.0)
 MODEL = build(frozen())
+STOOD = build(mjbeer.standing())
 TABLE = pathlib.Path(__file__).parents[1] / "examples" / "synthetic_track.csv"
 ROLLED = exact(mjbeer.sliding(), np.linspace(0, 0.5, 30), 0.0)
 GOOD: dict[str, Any] = {
@@ -114,6 +115,7 @@ GOOD_HERE: dict[str, dict[str, Any]] = {
     "reset": {"model": MODEL, "data": mujoco.MjData(MODEL)},
     "attach": {"can": mjbeer.standing()},
     "refill": {"model": build(mjbeer.standing()), "can": mjbeer.standing()},
+    "wall_rise": {"model": STOOD, "data": mujoco.MjData(STOOD), "prefix": ""},
 }
 """Those that are others in one function."""
 FRESH = {"parent": mujoco.MjSpec}

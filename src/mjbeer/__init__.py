@@ -24,7 +24,7 @@ from mjbeer.theory.trajectory import Trajectory, exact
 
 if TYPE_CHECKING:
     from mjbeer.drawing.video import render
-    from mjbeer.model.attach import attach, refill
+    from mjbeer.model.attach import attach, refill, wall_rise
     from mjbeer.model.build import build, specify
     from mjbeer.model.export import export
     from mjbeer.model.joints import reset
@@ -69,11 +69,12 @@ __all__ = [
     "specify",
     "standing",
     "sweep",
+    "wall_rise",
 ]
 
 # Imported on first use, so that the exact theory works without MuJoCo.
 _LAZY = {
-    "model.attach": ("attach", "refill"),
+    "model.attach": ("attach", "refill", "wall_rise"),
     "model.build": ("build", "specify"),
     "model.export": ("export",),
     "model.joints": ("reset",),

@@ -10,7 +10,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from mjbeer import Can, attach, build, exact, export, frozen, sliding, standing
+from mjbeer import Can, attach, build, exact, export, frozen, sliding, standing, wall_rise
 from mjbeer.cli.app import main
 from mjbeer.exceptions import ParameterError, TemplateError
 from mjbeer.model import free_numbers, looks, setting
@@ -58,6 +58,53 @@ def test_the_sensors_tell_the_slosh() -> None:
     mujoco.mj_forward(model, data)
     # About +y the side at +x goes down.
     assert data.sensor("slosh1_up").data == pytest.approx([-math.sin(tilt), 0, math.cos(tilt)])
+
+
+@pytest.mark.parametrize("modes", [0, 1, 3])
+def test_a_loop_is_told_how_high_the_liquid_rises(modes: int) -> None:
+    """By the sensors, in any direction of a can that has any place; a solid liquid does not rise."""
+    can = standing(modes=modes)
+    world = mujoco.MjSpec()
+    attach(world, can, pos=[0.1, 0.2, 0.3], quat=[0.7, 0.1, -0.2, 0.5], prefix="a-")
+    model = world.compile()
+    data = mujoco.MjData(model)
+    generator = np.random.default_rng(52)
+    around = np.linspace(0, 2 * math.pi, 3601)
+    surface = np.zeros_like(around)
+    for mode, elevation in enumerate(can.elevations(), start=1):
+        # MuJoCo normalizes it.
+        data.joint(f"a-slosh{mode}").qpos = 0.1 * generator.normal(size=4) + [1, 0, 0, 0]
+        mujoco.mj_forward(model, data)
+        x, y, _ = data.sensor(f"a-slosh{mode}_up").data
+        surface -= elevation * (x * np.cos(around) + y * np.sin(around))
+    # The highest of points that are 2 pi/3600 apart misses the top by 4e-7 of it.
+    assert wall_rise(model, data, "a-") == pytest.approx(surface.max(), rel=1e-6)
+    assert (wall_rise(model, data, "a-") > 0) == (modes > 0)
+
+
+def test_a_tilted_can_has_a_level_surface() -> None:
+    """It rises by the sine of the tilt if all modes move: the sum of 2/(xi^2 - 1) is 1."""
+    can = standing(modes=5)
+    tilt = 0.2
+    model = build(can, free=False)
+    data = mujoco.MjData(model)
+    for mode in range(1, 6):
+        data.joint(f"slosh{mode}").qpos = [math.cos(tilt / 2), 0, -math.sin(tilt / 2), 0]
+    left_out = 1 - can.elevations(5).sum()
+    assert 0 < left_out < 0.05
+    assert wall_rise(model, data, "") == pytest.approx((1 - left_out) * math.sin(tilt), rel=1e-12)
+    assert can.elevations(4000).sum() == pytest.approx(1, abs=1e-4)
+
+
+def test_a_can_that_does_not_stand_has_no_rise() -> None:
+    model = build(frozen())
+    with pytest.raises(ParameterError, match="no standing can under the prefix ''"):
+        wall_rise(model, mujoco.MjData(model), "")
+    stands = build(standing())
+    with pytest.raises(
+        ParameterError, match="must be those of the model, of 11, got 1 coordinates"
+    ):
+        wall_rise(stands, mujoco.MjData(model), "")
 
 
 @pytest.mark.filterwarnings("ignore::mjbeer.LiquidWarning")

@@ -43,9 +43,9 @@ COMMANDS: dict[str, Callable[[Namespace], int | None]] = {
 """What runs each command. The docstrings are the help; one may return an exit status."""
 SCENES_OF: dict[str, dict[str, Callable[..., Any]]] = {
     "simulate": SCENES,
-    "render": SCENES,
     "fit": SCENES,
     "sweep": SCENES,
+    "render": SCENES | STANDING,
     "view": SCENES | STANDING,
     "export": SCENES | STANDING,
 }

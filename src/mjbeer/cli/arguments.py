@@ -16,7 +16,7 @@ import numpy as np
 
 from mjbeer.drawing.camera import CAMERAS
 from mjbeer.exceptions import ParameterError
-from mjbeer.model.setting import MJBEER_INTEGRATORS, MUJOCO_INTEGRATORS, ROLLINGS, Setting
+from mjbeer.model.setting import LOOKS, MJBEER_INTEGRATORS, MUJOCO_INTEGRATORS, ROLLINGS, Setting
 from mjbeer.output.terminal import say
 from mjbeer.studies.benchmark.points import CASES
 from mjbeer.theory.can import LENGTH, RADIUS, Can
@@ -170,6 +170,12 @@ OPTIONS = {
             Path,
         ),
         Option(
+            "--looks",
+            "plain, in a file of 10 kB, or full, as mjbeer draws it",
+            "plain",
+            choices=LOOKS,
+        ),
+        Option(
             "--portable",
             "write MJCF that other tools load too: docs/portability.md has each tool's error",
             flag=True,
@@ -256,6 +262,8 @@ OPTIONS = {
 
 
 """The options of each command; those of a scene come before them."""
+_ROLLS = ("--rolling", "--friction", "--tolerance", "--camera")
+"""Options that a can that stands does not have: they are those of a can that rolls."""
 
 
 def scene_options(name: str, command: str) -> list[Option]:
@@ -280,8 +288,7 @@ def scene_options(name: str, command: str) -> list[Option]:
         if argument in defaults
     ]
     if name == "standing":
-        rolls = ("--rolling", "--friction")
-        return options + [option for option in OPTIONS[command] if option.name not in rolls]
+        return options + [option for option in OPTIONS[command] if option.name not in _ROLLS]
     if command != "fit":
         phi0 = "initial phi [degrees]: 0 with the load nearest to the incline"
         phi_dot0 = "initial rate of change of phi [degrees/s]"

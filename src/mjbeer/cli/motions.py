@@ -206,7 +206,13 @@ def simulate(given: Namespace) -> None:
 
 
 def render(given: Namespace) -> None:
-    """Simulate a scene and draw it as a video (MP4)."""
+    """Simulate a scene and draw it as a video (MP4).
+
+    A can that stands is held, and its liquid is let go with a surface 0.1 R high at the wall.
+    """
+    if given.scene == "standing":
+        _render_standing(given)
+        return
     from mjbeer.drawing.video import render
 
     trajectory = trajectory_of(given)
@@ -219,6 +225,18 @@ def render(given: Namespace) -> None:
         speed=given.speed,
         camera=given.camera,
     )
+    say(f"wrote {given.output}")
+
+
+def _render_standing(given: Namespace) -> None:
+    """Draw how the liquid of a standing can sloshes."""
+    from mjbeer.drawing.standing_film import StandingFilm, render_standing
+
+    can = scene(given)
+    if can.moving_modes == 0:
+        say("note: nothing moves in this film, because the liquid is solid", "yellow")
+    film = StandingFilm(can, given.duration, **steps(given), speed=given.speed)
+    render_standing(film, given.output, given.width, given.height)
     say(f"wrote {given.output}")
 
 
@@ -240,7 +258,7 @@ def view(given: Namespace) -> None:
         settings.setdefault("rolling", "equality")
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "scene.xml"
-        export(thing, path, **settings)
+        export(thing, path, **settings, looks="full")
         model = mujoco.MjModel.from_xml_path(str(path))
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, model.key(START).id)
@@ -260,7 +278,14 @@ def export(given: Namespace) -> None:
     """Write a scene with its start as one MJCF file that MuJoCo 4 loads without mjbeer."""
     from mjbeer.model.export import export
 
-    export(scene(given), given.output, **start(given), **steps(given), portable=given.portable)
+    export(
+        scene(given),
+        given.output,
+        **start(given),
+        **steps(given),
+        portable=given.portable,
+        looks=given.looks,
+    )
     keyframe = (
         'its start is a keyframe: mujoco.mj_resetDataKeyframe(model, data, model.key("start").id)'
     )

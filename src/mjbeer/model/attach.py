@@ -1,4 +1,4 @@
-"""Attaches a can to another world, and fills a can anew."""
+"""Attaches a can to another world, fills a can anew, and tells how high its liquid rises."""
 
 import warnings
 from collections.abc import Sequence
@@ -14,7 +14,7 @@ from mjbeer.model.model_numbers import shortest_time_constant
 from mjbeer.model.setting import MUJOCO_INTEGRATORS
 from mjbeer.model.spoiling import mass_reasons, option_reasons
 from mjbeer.theory.scene import Scene
-from mjbeer.theory.standing import MOST_MODES, Standing
+from mjbeer.theory.standing import MOST_MODES, Standing, mode_elevations
 
 _SLOSHES = tuple(f"slosh{mode}" for mode in range(1, MOST_MODES + 1))
 _PARTS = ("can", "load", "swing", "liquid", *_SLOSHES, "slide", "phi")
@@ -178,6 +178,57 @@ def refill(model: mujoco.MjModel, can: Standing | Scene, prefix: str = "can-") -
             UntrustedWarning,
             stacklevel=2,
         )
+
+
+def wall_rise(model: mujoco.MjModel, data: mujoco.MjData, prefix: str = "can-") -> float:
+    """Return how high the liquid of a standing can rises at the wall now, divided by R.
+
+    It is the largest rise around the wall, by all modes that move; a solid liquid has 0. The can is
+    the one that was attached under the `prefix`, or, with an empty one, that of a model of a
+    standing can. The value is that of `data.qpos`, also right after `mj_step`, and takes tens of
+    microseconds: ask in every step. Linear theory is quantitative up to 0.1, and gives a picture up
+    to 0.3. What rises beyond is no liquid any more, and nothing else says so.
+
+    Raises:
+      ParameterError: if the model has no such can, or the data are those of another model.
+    """
+    require.instance("model", model, mujoco.MjModel)
+    require.instance("data", data, mujoco.MjData)
+    require.instance("prefix", prefix, str)
+    if not _has(model, mujoco.mjtObj.mjOBJ_BODY, f"{prefix}liquid"):
+        raise ParameterError(
+            f"the model has no standing can under the prefix {require.format_value(prefix)}"
+        )
+    if len(data.qpos) != model.nq:
+        coordinates = f"{len(data.qpos)} coordinates"
+        raise ParameterError(
+            f"the data must be those of the model, of {model.nq}, got {coordinates}"
+        )
+    return float(np.hypot(*surface_slope(model, data, prefix)))
+
+
+def surface_slope(model: mujoco.MjModel, data: mujoco.MjData, prefix: str) -> np.ndarray:
+    """Return how high the liquid of a standing can rises at the walls towards +x and +y, in radii.
+
+    Every mode varies with the cosine of the angle around the axis, and so does their sum: the two
+    numbers are the vector -sum(2/(xi^2 - 1) (x, y)) with the sines (x, y) of the pendulums' tilts
+    in the frame of the can, and its length is the largest rise.
+    """
+    joint = mujoco.mjtObj.mjOBJ_JOINT
+    names = [f"{prefix}{slosh}" for slosh in _SLOSHES]
+    addresses = [
+        model.jnt_qposadr[mujoco.mj_name2id(model, joint, name)]
+        for name in names
+        if _has(model, joint, name)
+    ]
+    slope = np.zeros(2)
+    for elevation, first in zip(mode_elevations(len(addresses)), addresses, strict=True):
+        turn = data.qpos[first : first + 4].copy()
+        mujoco.mju_normalize4(turn)
+        w, x, y, z = turn
+        upper_end = np.array([2 * (x * z + w * y), 2 * (y * z - w * x)])
+        slope -= elevation * upper_end
+    return slope
 
 
 def _require_same_can(

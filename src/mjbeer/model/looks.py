@@ -9,7 +9,8 @@ import functools
 import math
 import pathlib
 import xml.etree.ElementTree as ET
-from typing import NamedTuple
+from collections.abc import Iterable
+from typing import Any, NamedTuple
 
 import mujoco
 import numpy as np
@@ -35,6 +36,12 @@ FOAM = 0.025
 EDGES = 256
 """Number of edges around the arc of the beer. The error of the polygon falls as its square; with
 256 edges mass, centroid and inertia are within 6e-4 for every fill up to 0.95."""
+PLAIN_EDGES = 32
+"""Number of edges around the arc of the beer where it is drawn plainly: its area is within 4 %."""
+_PLAIN = ("can_wall", "can_end", "can_mark")
+"""The geoms of a can that are there too if it is drawn plainly."""
+_GLASS = (0.86, 0.88, 0.91, 0.25)
+"""Colour and opacity of a wall that is drawn plainly, through which the beer is seen."""
 _UPRIGHT_GEOMS = ("can_wall", "can_end")
 """The geoms of a standing can, except its beer."""
 _NEEDED = {
@@ -89,6 +96,7 @@ def drawn_spec(root: ET.Element, path: pathlib.Path, can: Scene | Standing) -> m
         _fit_to_standing(spec, can)
     else:
         _fit_to_scene(spec, can)
+    _delete_unused(spec.meshes, {geom.meshname for geom in spec.geoms}, spec)
     return spec
 
 
@@ -149,10 +157,6 @@ def _fit_to_scene(spec: mujoco.MjSpec, scene: Scene) -> None:
             spec.delete(geom)
     draw_load = _place_point_load if scene.load.fill is None else shape_beer
     draw_load(spec, scene)
-    drawn = {geom.meshname for geom in spec.geoms}
-    for mesh in spec.meshes:
-        if mesh.name not in drawn:
-            spec.delete(mesh)
 
 
 def _fit_to_standing(spec: mujoco.MjSpec, standing: Standing) -> None:
@@ -189,6 +193,72 @@ def beer_column(standing: Standing) -> dict[str, Cylinder]:
         "beer": Cylinder(0.0, height - thickness, radius),
         "beer_top": Cylinder(-depth, top, width),
     }
+
+
+def simplify(spec: mujoco.MjSpec, can: Scene | Standing) -> None:
+    """Draw a can plainly, in a specification of `drawn_spec`: by a few geoms that need no mesh.
+
+    The wall is a cylinder that one can see through, with a disc at its far end and a rod along it
+    that shows how far it has turned. The only mesh that is left is that of a load with a fill, with
+    fewer edges. The can's materials have no textures.
+    """
+    for geom in list(spec.geoms):
+        if geom.meshname not in ("", "load") and geom.name not in _PLAIN:
+            spec.delete(geom)
+    _plain_wall(spec, can)
+    if isinstance(can, Scene) and can.load.fill is not None:
+        shape_beer(spec, can, PLAIN_EDGES)
+    for material in spec.materials:
+        if material.name not in ("grid", "planks"):
+            material.textures = [""] * len(material.textures)
+    _delete_unused(spec.meshes, {geom.meshname for geom in spec.geoms}, spec)
+    painted = (*spec.geoms, *spec.sites, *spec.tendons)
+    _delete_unused(spec.materials, {element.material for element in painted}, spec)
+    used_textures = {texture for material in spec.materials for texture in material.textures}
+    _delete_unused(spec.textures, used_textures | {"sky"}, spec)
+
+
+def _plain_wall(spec: mujoco.MjSpec, can: Scene | Standing) -> None:
+    """Replace the meshes of wall, end and mark by cylinders."""
+    radius = can.can.radius
+    thickness = WALL * radius
+    half_length = can.can.length / 2
+    upright = isinstance(can, Standing)
+    # A cylinder's axis is z, and that of a lying can y. The end of a standing can is its bottom.
+    along = np.array([0, 0, -1]) if upright else np.array([0, 1, 0])
+    turn = [1, 0, 0, 0] if upright else [math.sqrt(0.5), math.sqrt(0.5), 0, 0]
+    middle = np.array([0, 0, half_length if upright else 0])
+    mark = np.array([0, 0, radius + thickness])
+    shapes = {
+        # Longer by a little, so that its ends do not lie in those of the beer.
+        "can_wall": (middle, radius + thickness, half_length + thickness / 4),
+        "can_end": (
+            middle + along * (half_length + thickness / 2),
+            radius + thickness,
+            thickness / 2,
+        ),
+        "can_mark": (middle + mark, thickness, half_length),
+    }
+    for geom_name, (place, width, half_height) in shapes.items():
+        geom = spec.geom(geom_name)
+        if geom is not None:
+            geom.meshname = ""
+            geom.type = mujoco.mjtGeom.mjGEOM_CYLINDER
+            geom.pos = place
+            geom.quat = turn
+            geom.alt.type = mujoco.mjtOrientation.mjORIENTATION_QUAT
+            geom.size = [width, half_height, 0]
+    wall = spec.geom("can_wall")
+    if wall is not None:  # Somebody's own looks may lack it.
+        wall.material = ""
+        wall.rgba = _GLASS
+
+
+def _delete_unused(elements: Iterable[Any], used: set[str], spec: mujoco.MjSpec) -> None:
+    """Delete those elements of a specification whose names are not used."""
+    for element in list(elements):
+        if element.name not in used:
+            spec.delete(element)
 
 
 def _fit_sizes(spec: mujoco.MjSpec, can: Can, assets: pathlib.Path) -> None:

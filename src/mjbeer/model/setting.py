@@ -20,6 +20,9 @@ MUJOCO_INTEGRATORS: tuple[MujocoIntegrator, ...] = get_args(MujocoIntegrator)
 """The names of MuJoCo's own integrators, as in MJCF."""
 MJBEER_INTEGRATORS: tuple[MjbeerIntegrator, ...] = get_args(MjbeerIntegrator)
 """The names of mjbeer's own integrators, which step by themselves and have samples at any time."""
+Looks = Literal["plain", "full"]
+LOOKS: tuple[Looks, ...] = get_args(Looks)
+"""How an exported can may look: in a few geoms, or with all its meshes."""
 FRICTION = 1.0
 """Default friction coefficient of a contact, which is MuJoCo's default too."""
 LEAST_FRICTION = 1e-5

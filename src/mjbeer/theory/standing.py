@@ -187,7 +187,7 @@ class Standing:
 
         It is divided by R and by the sine of the pendulum's angle.
         """
-        return 2 / (self._xi(count) ** 2 - 1)
+        return mode_elevations(len(self._xi(count)))
 
     def reaction(self, omega: float | np.ndarray) -> Reaction:
         """Return force and moment of the liquid alone in a can shaken at `omega` [rad/s].
@@ -246,6 +246,14 @@ class Standing:
             bob=height / 2 - 2 * radius / xi * tanh_of_half,
             length=radius / (xi * tanh),
         )
+
+
+def mode_elevations(count: int) -> np.ndarray:
+    """Return how high the surface rises at the wall in each of the first modes, shape (count,).
+
+    It is 2/(xi^2 - 1), divided by R and by the sine of the pendulum's angle, at any fill.
+    """
+    return 2 / (_roots()[:count] ** 2 - 1)
 
 
 def standing(

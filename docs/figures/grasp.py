@@ -1,0 +1,59 @@
+"""Films the example that grasps a can: `python docs/figures/grasp.py` writes renders/grasp.webp."""
+
+import pathlib
+import runpy
+
+import mujoco
+from PIL import Image, ImageDraw, ImageFont
+
+import mjbeer
+from mjbeer.output import files
+
+WIDTH, HEIGHT, FPS = 720, 450, 18
+"""Width and height [pixels] and pictures per second, as in renders.py."""
+CHECKOUT = pathlib.Path(__file__).parents[2]
+
+
+def film(path: pathlib.Path) -> None:
+    """Draw the can in its fingers, with the rise of the beer and the largest one so far."""
+    example = runpy.run_path(str(CHECKOUT / "examples" / "grasp.py"))
+    model = example["world"]()
+    model.vis.global_.offwidth = WIDTH
+    model.vis.global_.offheight = HEIGHT
+    model.vis.headlight.ambient[:] = 0.45
+    model.vis.headlight.diffuse[:] = 0.35
+    data = mujoco.MjData(model)
+    camera = mujoco.MjvCamera()
+    camera.lookat[:] = [example["CARRY"] / 2, 0, 0.115]
+    camera.distance = 0.62
+    camera.azimuth = 52
+    camera.elevation = -14
+    font = ImageFont.load_default(20)
+    pictures = []
+    highest = 0.0
+    with mujoco.Renderer(model, HEIGHT, WIDTH) as renderer:
+        while data.time < example["END"]:
+            if data.time >= len(pictures) / FPS:
+                renderer.update_scene(data, camera)
+                picture = Image.fromarray(renderer.render())
+                said = f"{data.time:.1f} s: the beer has risen by at most {highest:.2f} R"
+                ImageDraw.Draw(picture).text((16, 12), said, (40, 50, 60), font)
+                pictures.append(picture)
+            example["control"](data)
+            mujoco.mj_step(model, data)
+            highest = max(highest, mjbeer.wall_rise(model, data))
+    with files.atomic_write(path) as temporary:
+        pictures[0].save(
+            temporary,
+            "WEBP",
+            save_all=True,
+            append_images=pictures[1:],
+            duration=1000 // FPS,
+            loop=0,
+            quality=60,
+            method=4,
+        )
+
+
+if __name__ == "__main__":
+    film(CHECKOUT / "renders" / "grasp.webp")

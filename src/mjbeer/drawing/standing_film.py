@@ -1,0 +1,191 @@
+"""The film of a can that stands, and whose liquid is let go with a tilted surface."""
+
+import contextlib
+import math
+import os
+from collections.abc import Generator
+from dataclasses import dataclass
+from functools import partial
+from typing import NamedTuple
+
+import mujoco
+import numpy as np
+
+from mjbeer import require
+from mjbeer.drawing import opengl, video
+from mjbeer.drawing.film import Film, RenderPlan
+from mjbeer.drawing.overlay import HEIGHT, STRIP, draw_title
+from mjbeer.drawing.sheet import Sheet
+from mjbeer.drawing.strip import Chart, ChartStrip, Line
+from mjbeer.exceptions import ParameterError, RenderingError
+from mjbeer.model.attach import surface_slope
+from mjbeer.model.build import build
+from mjbeer.model.setting import MujocoIntegrator
+from mjbeer.output import terminal
+from mjbeer.output.plots import COLOURS
+from mjbeer.theory.scene import DURATION
+from mjbeer.theory.standing import QUANTITATIVE, Standing
+
+_FIELD_OF_VIEW = 32.0
+"""Angle of the picture's height, seen from the eye [degrees]."""
+_ROOM = 1.5
+"""Height of the picture, divided by the can's length or its width."""
+
+
+class Slosh(NamedTuple):
+    """The motion of a standing can's liquid; arrays have one row for each sample."""
+
+    time: np.ndarray
+    """[s], shape (samples,)."""
+    qpos: np.ndarray
+    """Coordinates of the model, shape (samples, nq)."""
+    rise: np.ndarray
+    """How high the surface rises at the wall towards +x, in radii, shape (samples,)."""
+
+
+def slosh(can: Standing, model: mujoco.MjModel, duration: float) -> Slosh:
+    """Return how the liquid of a model of a can that is held moves for a `duration` [s].
+
+    It is let go at rest, in its first mode, with a surface that rises by 0.1 R at the wall.
+    """
+    data = mujoco.MjData(model)
+    if can.moving_modes > 0:
+        tilt = math.asin(QUANTITATIVE / can.elevations()[0])
+        data.joint("slosh1").qpos = [math.cos(tilt / 2), 0, -math.sin(tilt / 2), 0]
+    count = max(1, math.ceil(duration / model.opt.timestep))
+    qpos = np.empty((count + 1, model.nq))
+    rise = np.zeros(count + 1)
+    for sample in range(count + 1):
+        if sample > 0:
+            mujoco.mj_step(model, data)
+        qpos[sample] = data.qpos
+        rise[sample] = surface_slope(model, data, "")[0]
+    return Slosh(model.opt.timestep * np.arange(count + 1), qpos, rise)
+
+
+@dataclass(frozen=True)
+class StandingFilm(Film):
+    """The film of a can that is held, and whose liquid is let go with a rise of 0.1 R."""
+
+    can: Standing
+    duration: float = DURATION
+    """[s]."""
+    integrator: MujocoIntegrator = "RK4"
+    timestep: float = 1e-3
+    """[s]."""
+
+    def plan(self) -> RenderPlan:
+        duration = require.positive("duration", self.duration, "s")
+        # Held, for on a soft floor a can rocks a little, and this damps the slosh.
+        model = build(
+            self.can,
+            visuals=True,
+            integrator=self.integrator,
+            timestep=self.timestep,
+            free=False,
+        )
+        return RenderPlan(0.0, duration, self.speed, partial(self._pictures, model))
+
+    def _pictures(
+        self, model: mujoco.MjModel, times: np.ndarray, width: int, height: int
+    ) -> Generator[np.ndarray]:
+        can = self.can
+        motion = slosh(can, model, self.duration)
+        sheet = Sheet(width, height)
+        top = round(HEIGHT * sheet.unit)
+        below = round(STRIP * sheet.unit)
+        lines = [Line("MuJoCo", motion.time, motion.rise, COLOURS[0])]
+        if can.moving_modes > 0:
+            lines.append(Line("theory", motion.time, free_decay(can, motion.time)))
+        chart = Chart("rise at the right wall [R]", lines, least=2 * QUANTITATIVE)
+        strip = ChartStrip([chart], width, below)
+        title = f"A can of {can.name} that stands"
+        omega = f"{can.frequencies(1)[0] / (2 * math.pi):.2f} Hz"
+        words = f"{100 * can.fill:.3g} % full; linear theory says {omega}"
+        data = mujoco.MjData(model)
+        with contextlib.closing(_Camera(can, model, (width, height - top - below))) as camera:
+            for time in times:
+                sample = min(np.searchsorted(motion.time, time), len(motion.time) - 1)
+                data.qpos[:] = motion.qpos[sample]
+                sheet.put(camera.picture(data), top)
+                draw_title(sheet, title, words, time, self.speed)
+                strip.draw(sheet, time, height - below)
+                yield sheet.picture()
+
+
+def free_decay(can: Standing, time: np.ndarray) -> np.ndarray:
+    """Return the rise at the wall by linear theory, in radii, of a can that is held."""
+    omega = can.frequencies(1)[0]
+    ratio = can.damping_ratios(1)[0]
+    damped = omega * math.sqrt(1 - ratio**2)
+    phase = damped * time
+    decay = np.exp(-ratio * omega * time)
+    return QUANTITATIVE * decay * (np.cos(phase) + ratio * omega / damped * np.sin(phase))
+
+
+class _Camera:
+    """Draws a model by OpenGL, seen from the side. It holds graphics memory until it is closed."""
+
+    def __init__(self, can: Standing, model: mujoco.MjModel, pixels: tuple[int, int]) -> None:
+        """Prepare pictures of so many `pixels`."""
+        self._model = model
+        self._pixels = pixels
+        self._scene = mujoco.MjvScene(model, model.ngeom + 10)
+        self._view = mujoco.MjvCamera()
+        size = max(can.can.length, 2 * can.can.radius)
+        half_angle = math.radians(_FIELD_OF_VIEW / 2)
+        self._view.lookat[:] = [0, 0, 0.45 * can.can.length]
+        self._view.distance = _ROOM * size / (2 * math.tan(half_angle))
+        self._view.azimuth = 90
+        self._view.elevation = -14
+        model.vis.global_.fovy = _FIELD_OF_VIEW
+        model.vis.global_.offwidth, model.vis.global_.offheight = pixels
+        self._gl = opengl.context()
+        self._gl.make_current()
+        try:
+            font = mujoco.mjtFontScale.mjFONTSCALE_100.value
+            self._context = mujoco.MjrContext(model, font)
+        except (mujoco.FatalError, RuntimeError) as error:
+            size_in_words = f"{pixels[0]} x {pixels[1]} pixels"
+            raise RenderingError(f"no off-screen picture of {size_in_words}: {error}") from error
+
+    def picture(self, data: mujoco.MjData) -> np.ndarray:
+        """Return a picture of shape (height, width, 4), uint8."""
+        width, height = self._pixels
+        mujoco.mj_kinematics(self._model, data)
+        mujoco.mj_camlight(self._model, data)
+        option = mujoco.MjvOption()
+        everything = mujoco.mjtCatBit.mjCAT_ALL.value
+        mujoco.mjv_updateScene(self._model, data, option, None, self._view, everything, self._scene)
+        self._gl.make_current()
+        mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, self._context)
+        whole = mujoco.MjrRect(0, 0, width, height)
+        mujoco.mjr_render(whole, self._scene, self._context)
+        upside_down = np.empty((height, width, 3), np.uint8)
+        mujoco.mjr_readPixels(upside_down, None, whole, self._context)
+        opaque = np.full((height, width, 1), 255, np.uint8)
+        return np.concatenate([upside_down[::-1], opaque], axis=2)
+
+    def close(self) -> None:
+        """Free the graphics memory."""
+        self._gl.make_current()
+        self._context.free()
+
+
+def render_standing(
+    film: StandingFilm, path: str | os.PathLike[str], width: int, height: int, fps: float = 30
+) -> None:
+    """Write the film of a standing can as a video, MP4 with H.264, whole or not at all.
+
+    Raises:
+      ParameterError: if a parameter is not allowed.
+      RenderingError: if OpenGL or ffmpeg does not work; the message says what to do.
+      OutputError: if the file cannot be written.
+    """
+    target = require.path(path)
+    if target.suffix.lower() != ".mp4":
+        name = require.format_value(str(path))
+        raise ParameterError(f"the file's name must end in .mp4, got {name}")
+    plan = film.plan()
+    with terminal.progress_bar(terminal.STDERR, len(plan.times(fps))) as begin:
+        video.write(plan, target, width, height, fps, begin)
