@@ -62,7 +62,7 @@ def test_the_sensors_tell_the_slosh() -> None:
 
 @pytest.mark.parametrize("modes", [0, 1, 3])
 def test_a_loop_is_told_how_high_the_liquid_rises(modes: int) -> None:
-    """By the sensors, in any direction of a can that has any place; a solid liquid does not rise."""
+    """By the sensors, in any direction of a can at any place; a solid liquid does not rise."""
     can = standing(modes=modes)
     world = mujoco.MjSpec()
     attach(world, can, pos=[0.1, 0.2, 0.3], quat=[0.7, 0.1, -0.2, 0.5], prefix="a-")
