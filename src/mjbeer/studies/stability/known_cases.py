@@ -1,4 +1,4 @@
-"""Stiff and extreme cases, and those in which the search found errors, each with why it is one."""
+"""Stiff and extreme cases, and cases in which the search found errors, each with the reason."""
 
 import math
 from collections.abc import Iterator
@@ -15,7 +15,7 @@ from mjbeer.theory.scene import Scene, frozen, hoop, pendulum, sliding
 TOLERANCE = 1e-9
 """Tolerance of the runs that are made to a tolerance [rad]."""
 _STEPS = 300
-"""Timesteps a natural period."""
+"""Number of timesteps in a natural period."""
 _METAL = Can.sheet_metal()
 _SLIDING_OR_FROZEN = (("sliding", sliding), ("frozen", frozen))
 _SCENES = (
@@ -26,22 +26,22 @@ _SCENES = (
 _ADAPTED = ("tolerance",)
 _FIXED = ("reduced", "equality")
 _ALL = (*_FIXED, *_ADAPTED)
-"""The ways that must be accurate: RK4 in reduced models and by an equality, and a tolerance."""
+"""The settings that must be accurate: RK4 with "reduced" or "equality", and a tolerance."""
 
 
 class Variant(NamedTuple):
     """One way to simulate a case."""
 
     setting: str
-    """Name of the way: of rolling, integrator, and timestep or tolerance."""
+    """Way of rolling, integrator, and timestep or tolerance, in words."""
     trial: Trial
     within: float = math.inf
-    """Largest error that the run must have [rad], unless no model can have it and it must be
-    refused."""
+    """Largest error that the run may have [rad]. A scene that the way of rolling does not support
+    must be refused instead."""
 
 
 class KnownCase(NamedTuple):
-    """A case: its name, why it is one, and its variants."""
+    """A case: its name, the reason why it is a case, and its variants."""
 
     name: str
     why: str
@@ -54,7 +54,7 @@ def cases() -> list[KnownCase]:
 
 
 def natural_period(scene: Scene, phi_dot0: float = 0.0) -> float:
-    """Return the time scale of a motion [s]: that of a swing, a turn, or a fall by a radius."""
+    """Return the time of a swing, a turn, or a fall by a radius [s], whichever decides a motion."""
     try:
         frequency = scene.frequency()
     except NoEquilibriumError:
@@ -72,9 +72,9 @@ def _tried(
     accurate: tuple[str, ...] = _ALL,
     periods: float = 5.0,
 ) -> KnownCase:
-    """Return a motion, some natural periods long, in every way of rolling and to a tolerance.
+    """Return a case with a variant for every way of rolling, and for a tolerance.
 
-    `accurate` has the ways that must be accurate.
+    Its motion lasts some natural `periods`. The settings in `accurate` must be accurate.
     """
     period = natural_period(scene, phi_dot0)
     timestep = period / _STEPS
@@ -95,7 +95,7 @@ def _tried(
             within = TOLERANCE if "tolerance" in accurate else math.inf
             setting = f"{rolling}, to a tolerance of {TOLERANCE:g}"
             variants.append(Variant(setting, trial, within))
-    # As for a can on a desk, whatever the scene.
+    # The setting of a can on a desk is tried with every scene.
     duration = min(max(periods * period, 0.1), 30.0)
     desk = Trial(scene, phi0, phi_dot0, timestep=1e-3, steps=_steps(duration, 1e-3))
     variants.append(Variant("reduced, RK4, 1 ms", desk))
@@ -103,7 +103,7 @@ def _tried(
 
 
 def _steps(duration: float, timestep: float) -> int:
-    """Return the number of timesteps of a duration, which allows for rounding."""
+    """Return the number of timesteps in a duration, to which rounding adds none."""
     return math.ceil(duration / timestep * (1 - 1e-10))
 
 
@@ -181,7 +181,7 @@ def _extreme_fills() -> Iterator[KnownCase]:
 
 
 def _extreme_inclines() -> Iterator[KnownCase]:
-    """Yield motions on level and steep ground, and near the steepest incline that has a rest."""
+    """Yield motions on level and steep ground, and near the steepest one with an equilibrium."""
     for degrees in (0.0, 1e-8, 85.0):
         why = "level, or hardly tilted"
         accurate = _ALL
