@@ -28,10 +28,10 @@ def ladders(case: Case, quick: bool = False, missing: Container[str] = ()) -> La
 def _short_ladders(scene: Scene, quick: bool) -> Ladders:
     """Return the ladders of a motion of two seconds.
 
-    MuJoCo's integrators halve their timestep from one rung to the next; DOP853 starts with a larger
-    one and halves it in two rungs, and GaussJackson, whose error falls by four decades in a
-    halving, halves it in four. With `quick`, the ladders of MuJoCo's integrators end earlier, and
-    all others have at most every second rung.
+    MuJoCo's integrators halve their timestep at every rung. DOP853 starts with a larger timestep,
+    and takes two rungs for a halving. GaussJackson takes four, as a halving reduces its error by
+    four decades. With `quick`, the ladders of MuJoCo's integrators end earlier, and all others have
+    at most every second rung.
     """
     every = 2 if quick else 1
     halved = tuple(16e-3 / 2**k for k in range(6 if quick else 10))
@@ -58,7 +58,7 @@ def _short_ladders(scene: Scene, quick: bool) -> Ladders:
 
 
 def _long_ladders() -> Ladders:
-    """Return the few settings of the motion of 1,000 s: those that somebody would choose for it."""
+    """Return the few settings that somebody would choose for the motion of 1,000 s."""
     return {
         Curve("equality, defaults", "Euler"): (2e-3,),
         Curve("contact, defaults", "Euler"): (2e-3,),
