@@ -50,7 +50,7 @@ class KnownCase(NamedTuple):
 
 def cases() -> list[KnownCase]:
     """Return all cases."""
-    return [*_stiff(), *_extreme(), *_found()]
+    return [*_stiff(), *_extreme(), *_found_by_search()]
 
 
 def natural_period(scene: Scene, phi_dot0: float = 0.0) -> float:
@@ -63,7 +63,7 @@ def natural_period(scene: Scene, phi_dot0: float = 0.0) -> float:
     return 2 * math.pi / fastest if fastest else 1.0
 
 
-def _tried(
+def _motion(
     name: str,
     why: str,
     scene: Scene,
@@ -113,8 +113,8 @@ def _stiff() -> Iterator[KnownCase]:
     for ratio in (1e-3, 1e-2, 1.0, 1e2, 1e3):
         for kind, make in _SLIDING_OR_FROZEN:
             scene = make(can=Can.hoop(mass=ratio * Load.segment().mass))
-            yield _tried(f"{kind}, can {ratio:.0e} times the load", why, scene, 1.0)
-    yield _tried(
+            yield _motion(f"{kind}, can {ratio:.0e} times the load", why, scene, 1.0)
+    yield _motion(
         "pendulum on a wheel of 0.1 g",
         "J falls to a thousandth at phi = 0, where the load swings through in a thousandth of the "
         "period",
@@ -124,7 +124,7 @@ def _stiff() -> Iterator[KnownCase]:
     )
     why = "at pi the tendon that gives the model its J has no length and no direction"
     for beside in (0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3):
-        yield _tried(f"frozen, let go {beside:g} rad beside pi", why, frozen(), math.pi - beside)
+        yield _motion(f"frozen, let go {beside:g} rad beside pi", why, frozen(), math.pi - beside)
 
 
 def _extreme() -> Iterator[KnownCase]:
@@ -139,16 +139,16 @@ def _extreme() -> Iterator[KnownCase]:
             phi_dot0 = 0.0
         for kind, make in _SLIDING_OR_FROZEN:
             scene = make(gravity=gravity, can=_METAL)
-            yield _tried(f"{kind}, g = {gravity:g} m/s^2", why, scene, 1.0, phi_dot0)
+            yield _motion(f"{kind}, g = {gravity:g} m/s^2", why, scene, 1.0, phi_dot0)
     for kind, scene in _SCENES:
         yield from _extreme_starts(kind, scene)
-    yield _tried(
+    yield _motion(
         "point on the rim of a hoop, let go a quarter turn from the bottom",
         "at the bottom the point stands still, and J is the hoop's alone",
         hoop(),
         math.pi / 2,
     )
-    yield _tried(
+    yield _motion(
         "can with next to no inertia around a sliding load",
         "1e-20 kg m^2 are far below MuJoCo's smallest (mjMINVAL, 1e-15), and lost beside the "
         "load's 1e-5",
@@ -167,17 +167,17 @@ def _extreme_fills() -> Iterator[KnownCase]:
                 scene = make(fill=fill, can=can)
                 name = f"{kind}, {wall} can, fill {amount}"
                 if fill < 0.5:
-                    yield _tried(name, "a thin film of beer", scene, 1.0)
+                    yield _motion(name, "a thin film of beer", scene, 1.0)
                 elif fill == 1 or kind == "frozen":
                     why = "b = 0, or nearly: hardly any torque acts on the load"
-                    yield _tried(name, why, scene, 1.0)
+                    yield _motion(name, why, scene, 1.0)
                 else:
                     half_period = natural_period(scene) / 2
                     distance = scene.acceleration() / 2 * half_period**2
                     why = f"rounding of the {distance:.0e} m that it rolls is not small beside b"
                     # Only half a swing: where rounding disturbs the motion, a whole one would take
                     # minutes.
-                    yield _tried(name, why, scene, 1.0, accurate=(), periods=0.5)
+                    yield _motion(name, why, scene, 1.0, accurate=(), periods=0.5)
 
 
 def _extreme_inclines() -> Iterator[KnownCase]:
@@ -192,7 +192,7 @@ def _extreme_inclines() -> Iterator[KnownCase]:
         scenes = (("sliding, metal can", sliding(incline, can=_METAL)), ("frozen", frozen(incline)))
         for kind, scene in scenes:
             name = f"{kind}, incline {degrees:g} degrees"
-            yield _tried(name, why, scene, 0.5, accurate=accurate)
+            yield _motion(name, why, scene, 0.5, accurate=accurate)
     fold = math.sin(frozen().largest_incline())
     why = (
         "near the steepest incline with an equilibrium, eq. (53): a shallow well below, and a long "
@@ -206,7 +206,7 @@ def _extreme_inclines() -> Iterator[KnownCase]:
         else:
             side = "above"
             phi0 = math.pi / 2 - scene.incline
-        yield _tried(f"frozen, {abs(beside):.0e} {side} the fold", why, scene, phi0)
+        yield _motion(f"frozen, {abs(beside):.0e} {side} the fold", why, scene, phi0)
 
 
 def _extreme_starts(kind: str, scene: Scene) -> Iterator[KnownCase]:
@@ -215,11 +215,11 @@ def _extreme_starts(kind: str, scene: Scene) -> Iterator[KnownCase]:
     for beside, accurate in ((1e-2, _ADAPTED), (1e-6, ()), (1e-10, ())):
         _, top = scene.separatrix()
         name = f"{kind}, {beside:.0e} rad inside the separatrix"
-        yield _tried(name, why, scene, top - beside, accurate=accurate)
+        yield _motion(name, why, scene, top - beside, accurate=accurate)
     why = "the energy of a swing is tiny beside that of the spin"
     for spin in (1e2, 1e4):
-        yield _tried(f"{kind}, spun at {spin:.0e} rad/s", why, scene, 0.5, spin)
-    yield _tried(
+        yield _motion(f"{kind}, spun at {spin:.0e} rad/s", why, scene, 0.5, spin)
+    yield _motion(
         f"{kind}, let go at pi",
         "exactly on top a sliding load balances, unless rounding pushes it off, and a frozen one "
         "rolls down",
@@ -229,18 +229,20 @@ def _extreme_starts(kind: str, scene: Scene) -> Iterator[KnownCase]:
     )
 
 
-def _case(name: str, why: str, setting: str, trial: Trial, within: float = math.inf) -> KnownCase:
+def _single_run(
+    name: str, why: str, setting: str, trial: Trial, within: float = math.inf
+) -> KnownCase:
     """Return a case with one variant."""
     return KnownCase(name, why, (Variant(setting, trial, within),))
 
 
-def _found() -> Iterator[KnownCase]:
+def _found_by_search() -> Iterator[KnownCase]:
     """Yield the cases in which the random search found errors."""
     for kind, scene in (
         ("pendulum", pendulum(gravity=1e-3)),
         ("frozen", frozen(gravity=1e-3)),
     ):
-        yield _case(
+        yield _single_run(
             f"{kind} in contact in a gravity of 1e-3 m/s^2",
             "MuJoCo's solver stops once its cost falls by less than 1e-8 m^2/s^4: its tolerance "
             "has to scale with g^2",
@@ -259,7 +261,7 @@ def _found() -> Iterator[KnownCase]:
     can = Can(0.025006609705965473, 0.075, 4961.58700106942, 3.102631823991216)
     load = Load(2589.3299018014327, 0.01647772919452516)
     scene = Scene(can, load, 0.1789453673759448)
-    yield _case(
+    yield _single_run(
         "a swing through 2 rad, to a loose tolerance",
         "two runs were 1.4e-4 rad apart, but 1.1e-3 rad off: steps so large do not show the "
         "method's order",
@@ -269,7 +271,7 @@ def _found() -> Iterator[KnownCase]:
     )
 
     _, top = pendulum().separatrix()
-    yield _case(
+    yield _single_run(
         "pendulum, 1.9e-4 rad inside the separatrix, to a tolerance",
         "rounding grows a millionfold: two runs were by chance 3e-9 rad apart, and 7e-7 rad off",
         "to a tolerance",
@@ -284,7 +286,7 @@ def _found() -> Iterator[KnownCase]:
 
     can = Can(2.232597258875798, 6.697791776627394, 24.64135895693299, 122.82462012912089)
     load = Load(9007.68689806812, 0.9475437058226647, 14361.91170936032)
-    yield _case(
+    yield _single_run(
         "frozen, 6e-10 rad beside the top, in contact",
         "the solver of the contact took what moves the can for nothing, alike at half the timestep",
         "contact, DOP853, 6 ms",
@@ -300,7 +302,7 @@ def _found() -> Iterator[KnownCase]:
         ERROR,
     )
 
-    yield _case(
+    yield _single_run(
         "a can that slips before its only sample",
         "slip has to be counted over all steps, whatever samples are asked for",
         "contact, DOP853, 0.19 ms",
@@ -318,7 +320,7 @@ def _found() -> Iterator[KnownCase]:
 
     scene = Scene(Can(0.033, 0.1, 61.0, 0.0332), Load(0.1, 0.0039, 1.09e-5), 0.0)
     rate = 1298.0
-    yield _case(
+    yield _single_run(
         "four whole turns in a timestep",
         "RK4 sees the same angle at every half of its step, and at half the timestep too; uneven "
         "timesteps do not",
@@ -336,7 +338,7 @@ def _found() -> Iterator[KnownCase]:
 
     can = Can(0.033, 0.099, 0.20528761908358859, 3.284134444100273e-11)
     load = Load(0.1, 0.023717555437268875, 4.4992031467605796e-24)
-    yield _case(
+    yield _single_run(
         "a load without inertia in a can with next to none, to a tolerance",
         "two runs may miss the bottom alike; the energy drifts where a step does, and bounds the "
         "tolerance too",
