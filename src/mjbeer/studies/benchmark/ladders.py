@@ -34,24 +34,25 @@ def _short_ladders(scene: Scene, quick: bool) -> Ladders:
     at most every second rung.
     """
     every = 2 if quick else 1
-    halved = tuple(16e-3 / 2**k for k in range(6 if quick else 10))
-    large = tuple(128e-3 / 2 ** (k / 2) for k in range(0, 15, every))
-    tolerances = tuple(10.0**-k for k in range(3, 13, 3 if quick else 1))
+    halvings = range(6 if quick else 10)
+    decades = range(3, 13, 3 if quick else 1)
+    of_mujoco = tuple(16e-3 / 2**k for k in halvings)
+    of_dop853 = tuple(128e-3 / 2 ** (k / 2) for k in range(0, 15, every))
+    of_gauss_jackson = tuple(32e-3 / 2 ** (k / 4) for k in range(0, 29, every))
+    tolerances = tuple(10.0**-k for k in decades)
     curves: Ladders = {}
     for rolling in ROLLINGS:
         if not supported(scene, rolling):
             continue
         for integrator in MUJOCO_INTEGRATORS:
-            curves[Curve(rolling, integrator)] = halved
-        curves[Curve(rolling, "DOP853")] = large
-        if rolling != "contact":  # which is too soft for a tolerance
+            curves[Curve(rolling, integrator)] = of_mujoco
+        curves[Curve(rolling, "DOP853")] = of_dop853
+        if rolling != "contact":  # a contact is too soft for a tolerance
             curves[Curve(rolling, CHOSEN, TOLERANCE)] = tolerances
-    curves[Curve("reduced", "GaussJackson")] = tuple(
-        32e-3 / 2 ** (k / 4) for k in range(0, 29, every)
-    )
+    curves[Curve("reduced", "GaussJackson")] = of_gauss_jackson
     for name, rolling in USUAL.items():
         if supported(scene, rolling):
-            curves[Curve(name, "Euler")] = halved
+            curves[Curve(name, "Euler")] = of_mujoco
     for name, tool in OTHER_TOOLS.items():
         curves[Curve(name, "", TOLERANCE)] = tool.tolerances[::every]
     return curves

@@ -172,12 +172,15 @@ def _extreme_fills() -> Iterator[KnownCase]:
                     why = "b = 0, or nearly: hardly any torque acts on the load"
                     yield _motion(name, why, scene, 1.0)
                 else:
-                    half_period = natural_period(scene) / 2
-                    distance = scene.acceleration() / 2 * half_period**2
-                    why = f"rounding of the {distance:.0e} m that it rolls is not small beside b"
-                    # Only half a swing: where rounding disturbs the motion, a whole one would take
-                    # minutes.
-                    yield _motion(name, why, scene, 1.0, accurate=(), periods=0.5)
+                    yield _sliding_in_a_nearly_full_can(name, scene)
+
+
+def _sliding_in_a_nearly_full_can(name: str, scene: Scene) -> KnownCase:
+    """Return half a swing: where rounding disturbs the motion, a whole one would take minutes."""
+    half_period = natural_period(scene) / 2
+    distance = scene.acceleration() / 2 * half_period**2
+    why = f"rounding of the {distance:.0e} m that it rolls is not small beside b"
+    return _motion(name, why, scene, 1.0, accurate=(), periods=0.5)
 
 
 def _extreme_inclines() -> Iterator[KnownCase]:

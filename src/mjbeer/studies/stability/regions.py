@@ -323,13 +323,8 @@ class Pace(NamedTuple):
 _MANY_STEPS = LogUniform(20, 3000)
 _NEARLY_ONE = OneOf(1.0, Minus(1, signed(LogUniform(1e-12, 0.1))))
 _MULTIPLES = (1, 1, 1, 2, 3)
-_WHOLE_TURNS = OneOf(
-    *(
-        math.pi * part * multiple
-        for part in (0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
-        for multiple in _MULTIPLES
-    )
-)
+_TURNS = math.pi * np.array([0.5, 1.0, 2.0, 4.0, 8.0, 16.0])
+_WHOLE_TURNS = OneOf(*np.outer(_TURNS, _MULTIPLES).ravel().tolist())
 _RESONANT = "resonant"
 """A pace with a whole number of turns, or nearly, in a step or a part of one.
 
