@@ -6,17 +6,17 @@ from typing import Any
 
 
 def json_values(content: Any) -> Any:
-    """Return content as JSON has it, in which infinity and NaN are None."""
+    """Return content as JSON represents it, with None for infinity and NaN."""
     return json.loads(json.dumps(content), parse_constant=lambda _: None)
 
 
 def to_json(content: Any, indent: int | None = None) -> str:
-    """Return content as JSON, in one line unless it is indented."""
+    """Return content as JSON text, in one line unless it is indented."""
     return json.dumps(json_values(content), indent=indent) + "\n"
 
 
 def document(about: Mapping[str, Any], name: str, rows: Iterable[Mapping[str, Any]]) -> str:
-    """Return as JSON what a study is about, and its rows under a name, one a line.
+    """Return a study as JSON: what it is about, and under `name` its rows, each on a line.
 
     The numbers in the rows have six digits.
     """

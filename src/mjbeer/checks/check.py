@@ -8,35 +8,35 @@ from typing import Any
 from mjbeer.checks.as_json import json_values
 
 _EXPECTED_WITHIN = 0.05
-"""Largest relative difference of a misprint's error from the expected one, which is stated with two
+"""Largest relative difference between the error of a misprint and the expected one, which has two
 digits."""
 
 
 @dataclass(frozen=True)
 class Result:
-    """A measured quantity, and the error that it may have."""
+    """A measured quantity, its error, and the bound on that error."""
 
     group: str
-    """The part of a study that it belongs to, or the equation of the paper."""
+    """The part of a study to which the quantity belongs, or the equation of the paper."""
     name: str
     """The quantity."""
     by: str = ""
-    """The scene and the setting, or the witness, that it was measured with."""
+    """The scene and the setting, or the witness, with which it was measured."""
     bound: float = math.inf
     """Largest error that passes, in `unit`; infinite where nothing is judged."""
     unit: str = ""
     reason: str = ""
-    """Which error dominates; the bound follows from it."""
+    """The error that dominates, from which the bound follows."""
     error: float | None = None
-    """Size of the deviation from what is expected, in `unit`; None if there is none, or none that
-    is finite."""
+    """Size of the deviation from the expected value, in `unit`; None if nothing is compared, or the
+    deviation is not finite."""
     values: dict[str, Any] = field(default_factory=dict)
-    """Other measured values, as JSON has them. For a misprint of the paper its error is "printed",
-    and the one that it must have "expected_error"."""
+    """Other measured values, as JSON has them. For a misprint of the paper, "printed" is its error
+    and "expected_error" the error that it must have."""
 
     @property
     def passed(self) -> bool:
-        """Whether the error is within its bound, and a misprint's is as stated; NaN never is."""
+        """Whether the error is within its bound, and a misprint's error as expected. NaN fails."""
         if not self._misprint_is_as_expected:
             return False
         if self.bound == math.inf:
@@ -45,7 +45,7 @@ class Result:
 
     @property
     def _misprint_is_as_expected(self) -> bool:
-        """Whether what is misprinted, if anything is, has the error that it must have."""
+        """Whether the misprint, if there is one, has the error that it must have."""
         expected = self.values.get("expected_error")
         if expected is None:
             return True
@@ -60,7 +60,7 @@ class Result:
         return json_values(fields)
 
     def summary_line(self) -> str:
-        """Return the result in a line, such as one that failed."""
+        """Return the result in a line, as for a list of failures."""
         by = f" ({self.by})" if self.by else ""
         error = "-" if self.error is None else f"{self.error:.1e}"
         bound = f"{self.bound:.1e} {self.unit}".strip()
@@ -74,13 +74,13 @@ class Result:
 
 @dataclass(frozen=True)
 class Check:
-    """A quantity to be measured; besides the function that measures it, as in `Result`."""
+    """A quantity to be measured. Fields that a `Result` has, too, mean the same there."""
 
     group: str
     name: str
     measure: Callable[[], float | dict[str, Any]]
-    """Returns the deviation with its sign, or values as JSON has them, among which may be the
-    deviation as "error"."""
+    """Returns the deviation with its sign, or a dictionary of values as JSON has them, in which
+    the deviation may be "error"."""
     by: str = ""
     bound: float = math.inf
     unit: str = ""

@@ -1,4 +1,4 @@
-"""Files that are whole or not there, whatever interrupts their writing."""
+"""Files that are either whole or missing, whatever interrupts their writing."""
 
 import os
 import pathlib
@@ -58,7 +58,7 @@ def _take_permissions(old: pathlib.Path, new: pathlib.Path) -> None:
 
 @contextmanager
 def output_errors(path: str | os.PathLike[str], folder: pathlib.Path) -> Generator[None]:
-    """Raise what the system has against a path as an `OutputError`.
+    """Raise an error of the system about a path as an `OutputError`.
 
     If the folder does not exist, as when it is misspelt, the error names the nearest one that does.
     """

@@ -9,19 +9,19 @@ from mjbeer.exceptions import OutputError
 from mjbeer.output import files
 
 MARKER = ".mjbeer"
-"""Name of the file that says to which command a folder belongs."""
+"""Name of the file that says which command a folder belongs to."""
 UNFINISHED = ".unfinished"
-"""Name of the folder in it that has the new results until they are whole."""
+"""Name of the folder within it for new results that are not yet complete."""
 _NAMED = 3
-"""Number of files of others that an error names."""
+"""Number of foreign files that an error names."""
 
 
 @contextmanager
 def owned(folder: pathlib.Path, command: str) -> Generator[None]:
     """Hold a folder of results for a command while the block runs; make it before, if needed.
 
-    A new or an empty folder belongs to the command from now on. The system releases the hold when
-    the process ends, even if it is killed; the hidden file of the lock may stay.
+    A new or an empty folder belongs to the command from then on. The system releases the lock when
+    the process ends, even if it is killed; its hidden file may stay.
 
     Raises:
       OutputError: if the folder cannot be made, has files that the command did not write, or is
@@ -47,7 +47,7 @@ def _claim(folder: pathlib.Path, command: str) -> None:
     """Write the marker of a command into an empty folder.
 
     Raises:
-      OutputError: if the folder is not empty, and not the command's.
+      OutputError: if the folder is not empty and does not belong to the command.
     """
     marker = folder / MARKER
     names = sorted(path.name for path in folder.iterdir())
@@ -72,16 +72,16 @@ def _claim(folder: pathlib.Path, command: str) -> None:
 def replaced(folder: pathlib.Path) -> Generator[pathlib.Path]:
     """Yield an empty folder for new results; after the block its files replace those in `folder`.
 
-    After an error or an interruption the old results are as they were. The folder must be `owned`.
+    After an error or an interruption the old results are unchanged. The folder must be `owned`.
 
     Raises:
       OutputError: if the folder cannot be written to.
     """
     unfinished = folder / UNFINISHED
     with files.output_errors(folder, folder):
-        if unfinished.exists():  # of a command that was killed
+        if unfinished.exists():  # a command was killed
             shutil.rmtree(unfinished)
-        unfinished.mkdir(mode=0o700)  # old results may be ones that others must not read
+        unfinished.mkdir(mode=0o700)  # others may not be allowed to read the results
     try:
         yield unfinished
         with files.output_errors(folder, folder):

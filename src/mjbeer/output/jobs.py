@@ -32,7 +32,7 @@ class Job:
     name: str
     """What an error and the progress bar call it."""
     work: Callable[[], Any]
-    """Does it, and returns its result; both can be pickled where it goes to another process."""
+    """The function that does it. For another process, it and its result must be picklable."""
 
 
 class Finished(NamedTuple):
@@ -56,11 +56,11 @@ def run_jobs(jobs: Sequence[Job], console: Console | None) -> list[Any]:
 
 
 def finished_jobs(jobs: Sequence[Job], console: Console | None) -> Generator[Finished]:
-    """Yield jobs as a process for each core finishes them, or this process if one is enough.
+    """Run jobs in a process for each core, or in this one for a single job; yield each at its end.
 
-    The jobs begin in their order, without warnings, and `console` shows a progress bar. When the
-    generator is closed, or an error or an interruption ends it, all processes end at once, and so
-    do those that they have started.
+    The jobs begin in their order, without warnings, and `console` shows a progress bar. If the
+    generator is closed, or ended by an error or an interruption, all processes end at once, and so
+    do the processes that they have started.
 
     Raises:
       OSError: if the system ends one of the processes.
@@ -86,9 +86,9 @@ def finished_jobs(jobs: Sequence[Job], console: Console | None) -> Generator[Fin
 
 
 def as_finished(jobs: Iterable[Job], executor: Executor, at_once: int) -> Generator[Finished]:
-    """Yield jobs as an executor finishes them, which has up to so many `at_once`.
+    """Submit jobs to an executor, up to so many `at_once`, and yield each when it is finished.
 
-    A job is taken from `jobs` when its turn comes, so that it may depend on what was finished
+    A job is taken from `jobs` when its turn comes, so that it may depend on the jobs finished
     before. When the generator is closed, jobs that have not begun are cancelled.
 
     Raises:
@@ -141,21 +141,21 @@ def _naming(job: Job) -> Generator[None]:
 def pool(most: int) -> Generator[ProcessPoolExecutor]:
     """Yield an executor with a process for each core, but not more than `most`.
 
-    At the end of the block they have ended. After an error or an interruption they are killed, with
-    what they have started.
+    At the end of the block all processes have ended. After an error or an interruption they are
+    killed, together with the processes that they have started.
     """
-    # Not forked: a copy of a process with several threads may hang, and a copy of OpenGL is of no
-    # use.
+    # Processes are not forked: a copy of a process with several threads may hang, and a copy of its
+    # OpenGL context cannot draw.
     context = multiprocessing.get_context("spawn")
-    # Threads for linear algebra would take the cores from other processes; NumPy asks when it is
-    # loaded.
+    # Threads for linear algebra would take the cores from other processes. NumPy reads this when it
+    # is loaded.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     processes = max(1, min(os.cpu_count() or 1, most))
     others = multiprocessing.active_children()
     executor = ProcessPoolExecutor(processes, context, _begin_worker)
     try:
-        # All processes start here: the executor overlooks the end of one that starts with its last
-        # job.
+        # All processes start here, as the executor overlooks the end of a process that starts with
+        # the last job.
         for _ in range(processes):
             executor.submit(_nothing)
         yield executor
@@ -175,9 +175,9 @@ def _nothing() -> None:
 def _begin_worker() -> None:
     """Make this process a worker, which is silent and does not outlive its parent.
 
-    It leads a group of its own, to which all belongs that it starts, such as ffmpeg: an
-    interruption from the terminal does not reach the group, and whoever kills the group leaves
-    nothing behind.
+    It leads a process group of its own, to which all processes belong that it starts, such as
+    ffmpeg. An interruption from the terminal does not reach the group, and killing the group leaves
+    no process behind.
     """
     os.setpgid(0, 0)
     warnings.simplefilter("ignore")
@@ -192,7 +192,7 @@ def _begin_worker() -> None:
 
 
 def _kill(worker: BaseProcess) -> None:
-    """Kill a worker, and what it has started."""
+    """Kill a worker and all processes that it has started."""
     assert worker.pid is not None, "it has been started"
     try:
         os.killpg(worker.pid, signal.SIGKILL)

@@ -22,9 +22,9 @@ from mjbeer.output import files
 # on white.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 GREY = "#666666"
-"""Of notes, and of lines that something is compared with: dark enough to be read on white."""
-# Lines: a motion by exact theory is wide and pale, so that the simulation's lies on it; then a
-# motion by MuJoCo, what cannot happen, and a level or a time to compare with.
+"""The grey of notes and of reference lines, dark enough to be read on white."""
+# Styles of lines. A motion by exact theory is wide and pale, so that the simulated one is visible
+# on top of it. Dotted motions cannot happen; references are levels or times to compare with.
 THEORY: dict[str, Any] = {"color": "#C4C4C4", "linewidth": 5, "zorder": 1.5}
 SIMULATED: dict[str, Any] = {"color": COLOURS[0]}
 UNPHYSICAL: dict[str, Any] = {"color": "#8C8C8C", "linestyle": ":"}
@@ -38,24 +38,22 @@ STYLE: Any = {
     "axes.spines.top": False,
     "axes.titlelocation": "left",
     "axes.titlesize": 11,
-    "font.sans-serif": [
-        "DejaVu Sans",
-        "Verdana",
-    ],  # where there is no DejaVu Sans, Verdana has the same widths
+    # Verdana has the same widths, where DejaVu Sans is missing.
+    "font.sans-serif": ["DejaVu Sans", "Verdana"],
     "grid.alpha": 0.3,
     "legend.frameon": False,
     "svg.fonttype": "none",
-    "svg.hashsalt": "mjbeer",  # with this and no date, equal plots are equal files
+    "svg.hashsalt": "mjbeer",  # this, and no date, makes files of equal plots equal
 }
 _TITLE: dict[str, Any] = {"fontsize": 13.5, "weight": "bold"}
 _SUBTITLE: dict[str, Any] = {"fontsize": 10.5, "color": GREY}
 _LETTERS = 8.3
-"""Letters of the title in an inch; the subtitle's are narrower."""
+"""Number of letters of the title in an inch; those of the subtitle are narrower."""
 
 
 @dataclass
 class Picture:
-    """Where a plot goes that is no file: an SVG, and title and subtitle as texts of their own."""
+    """A plot that is not written to a file: its SVG, and title and subtitle as separate texts."""
 
     name: str
     title: str = ""
@@ -75,8 +73,8 @@ def chart(
 ) -> Generator[list[Axes]]:
     """Yield the axes to draw into, row by row; at the end write `path` with .svg, or a `Picture`.
 
-    `width` and `height` are the size of the whole plot [inches]. The title says what is shown, and
-    the subtitle, a smaller line below it, of which scene.
+    `width` and `height` are the size of the whole plot [inches]. The title says what is shown. The
+    subtitle, in smaller letters below it, says for which scene.
 
     Raises:
       OutputError: if a file cannot be written.
@@ -94,7 +92,7 @@ def chart(
             used += heading.height
         panels = list(figure.subplots(rows, columns, squeeze=False).flat)
         yield panels
-        # Set out here and not by `savefig`, which would draw the whole plot for it first.
+        # The layout is done here, as `savefig` would draw the whole plot once more for it.
         ConstrainedLayoutEngine(rect=(0, 0, 1, 1 - used / height)).execute(figure)
         metadata = {"Date": None, "Title": title, "Description": subtitle}
         file = io.StringIO()
@@ -117,7 +115,7 @@ class _Heading(NamedTuple):
 
 
 def _headings(title: str, subtitle: str, width: float) -> list[_Heading]:
-    """Return the lines of a title and a subtitle above a plot of some width [inches]."""
+    """Return the lines of title and subtitle above a plot of this width [inches]."""
     letters = round(_LETTERS * width)
     smaller_letters = round(1.7 * _LETTERS * width)
     headings = [_Heading(line, 0.32, _TITLE) for line in textwrap.wrap(title, letters)]
@@ -129,7 +127,7 @@ def _headings(title: str, subtitle: str, width: float) -> list[_Heading]:
 def note(
     axes: Axes, text: str, place: tuple[float, float], offset: tuple[float, float], **style: Any
 ) -> None:
-    """Write a note or the name of a line beside a `place` in the data.
+    """Write a note, or the name of a line, beside a `place` in the data.
 
     It stands `offset` [points] to the right of the place and above it.
     """
@@ -140,7 +138,7 @@ def note(
 def name_below(axes: Sequence[Axes], columns: int, handles: Sequence[Artist] = ()) -> None:
     """Name what the axes show in one legend below the plot.
 
-    It has `handles`, or else the lines of the axes that have a label, each label once.
+    The legend has the `handles`, or without them the labelled lines of the axes, each label once.
     """
     if not handles:
         by_label: dict[str, Artist] = {}

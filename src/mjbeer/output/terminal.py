@@ -1,6 +1,6 @@
 """Texts, tables and a progress bar on standard output and standard error.
 
-What cannot be printed is an error.
+A failure to print is an error.
 """
 
 import os
@@ -27,7 +27,7 @@ class Table:
     columns: tuple[str, ...]
     rows: Sequence[tuple[str, ...]]
     left: tuple[int, ...] = (0,)
-    """Indices of the columns that are aligned to the left, as those of numbers are not."""
+    """Indices of the columns that are aligned to the left; columns of numbers are not."""
 
     def __rich__(self) -> rich.table.Table:
         table = rich.table.Table(title=self.title)
@@ -53,8 +53,8 @@ class Table:
 def show(*tables: Table) -> None:
     """Print tables to standard output, with the errors of `printing`.
 
-    Where a program reads it, they are lines with tabs between the columns, below their titles,
-    which follow a #.
+    Unless it is a terminal, each table is its title behind a #, and lines with tabs between the
+    columns.
     """
     if sys.stdout.isatty():
         with printing():
@@ -64,13 +64,13 @@ def show(*tables: Table) -> None:
 
 
 def say(text: str, style: str = "") -> None:
-    """Print a line to standard error, with brackets as they are: names of files may have them."""
+    """Print a line to standard error. Brackets, as in names of files, are no markup."""
     STDERR.print(text, style=style, highlight=False, markup=False, soft_wrap=True)
 
 
 @contextmanager
 def status(text: str) -> Generator[None]:
-    """Show on a terminal what is being done in the block; the line goes when it ends."""
+    """Show on a terminal what the block does; the line disappears when the block ends."""
     if STDERR.is_terminal:
         with STDERR.status(escape(text)):
             yield

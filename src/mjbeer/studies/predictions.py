@@ -1,4 +1,4 @@
-"""Linear theory in advance: which timesteps keep a small motion bounded, and which accurate.
+"""Linear theory of integrators: at which timesteps a small motion stays bounded and accurate.
 
 **Integrators** turn linear equations q'' = -k q - b q' into x_{n+1} = G x_n for x = (q, h q'), with
 a matrix G of K = k h^2 and B = b h alone. A motion is bounded if no eigenvalue of G lies outside
@@ -14,12 +14,12 @@ impedance d (solimp's dmin = dmax)
 
     b = 2/(d tau),   k = d/(d tau zeta)^2,
 
-so that a share s = d leaves b s = 2/tau and k s = 1/(tau zeta)^2: stability depends on h/tau and
-zeta alone. Where MuJoCo overestimates the row's diagonal, as it does by default, s < d, and the row
-is softer than its solref suggests.
+so that s = d gives b s = 2/tau and k s = 1/(tau zeta)^2, and stability depends on h/tau and zeta
+alone. By default MuJoCo overestimates the diagonal of the row. Then s < d, and the row is softer
+than its solref suggests.
 
-**Damping** is what an integrator may treat implicitly: all but RK4 and DOP853 do, but "Euler" not
-that of a tendon, which damps the reduced model.
+**Damping** is treated implicitly by all integrators but RK4 and DOP853. "Euler" does so only for
+joints, and the damping of the reduced model is that of a tendon.
 """
 
 import math
@@ -38,27 +38,29 @@ from mjbeer.theory.scene import Scene
 RUNGE_KUTTA = ("RK4", "DOP853")
 """The integrators that are Runge-Kutta methods; MuJoCo's others are semi-implicit Euler.
 
-GaussJackson is a multistep method, and nothing here is about it.
+GaussJackson, a multistep method, is not treated here.
 """
 IMPLICIT = ("implicit", "implicitfast", "discrete")
 """The integrators that step with M + h D in place of M."""
 PERIODS = 200
 """Number of periods over which a stable swing must stay bounded."""
 GROWTH = 100.0
-"""Largest factor by which a bounded swing may grow over `PERIODS`. Half a per cent below the limit
-of semi-implicit Euler a swing grows to 10 times its size, half a per cent above it to far more than
-this."""
+"""Largest factor by which a bounded swing may grow over `PERIODS`.
+
+With semi-implicit Euler, a swing grows tenfold if the timestep is 0.5 % below the limit, and by far
+more than this factor if it is 0.5 % above.
+"""
 ACCURATE_PERIODS = 10
 """Number of periods over which an accurate swing must stay accurate."""
 ACCURACY = 1e-2
-"""Largest error of an accurate swing: a distance in the plane of (phi, phi_dot/omega), over the
-amplitude."""
+"""Largest error of an accurate swing: a distance in the plane of phi and phi_dot/omega, divided by
+the amplitude."""
 MAX_IMPEDANCE = 0.9999
 """Impedance of the hardest row that MuJoCo accepts, mjMAXIMP."""
 
 
 class _Tableau(NamedTuple):
-    """Of a Runge-Kutta method."""
+    """The coefficients of a Runge-Kutta method."""
 
     stages: np.ndarray
     """The matrix A."""
@@ -74,7 +76,7 @@ _TABLEAUS = {
     "DOP853": _Tableau(np.asarray(DOP853.A[:12, :12]), np.asarray(DOP853.B)),
 }
 _RATIO = 1.02
-"""Ratio of two successive values in the search for the first one that fails."""
+"""Ratio of two successive values that `first` tries."""
 
 
 def polynomial(integrator: str) -> np.ndarray:
@@ -132,9 +134,8 @@ def motion(matrix: np.ndarray, start: np.ndarray, steps: int) -> np.ndarray:
 def error(integrator: str, swing: float) -> float:
     """Return the largest error, as in `ACCURACY`, of a swing from rest over `ACCURATE_PERIODS`.
 
-    `swing` is omega h. For small h it is omega h/2 under semi-implicit Euler, whose ellipse in the
-    phase plane leans,
-    and (omega h)^4/120 a radian under RK4.
+    `swing` is omega h. For small h the error is omega h/2 with semi-implicit Euler, whose ellipse
+    in the phase plane leans. With RK4 it is (omega h)^4/120 for each radian of the swing.
     """
     steps = math.floor(ACCURATE_PERIODS * 2 * math.pi / swing)
     states = motion(amplification(integrator, swing**2), np.array([1.0, 0.0]), steps)
@@ -147,8 +148,8 @@ def error(integrator: str, swing: float) -> float:
 def stable_limit(integrator: str) -> float:
     """Return the largest omega h with a bounded swing.
 
-    It is 2 for semi-implicit Euler, 2 sqrt(2) for RK4, and 5.97 for DOP853; for RK4 0.15 % more, as
-    an instability needs time to grow.
+    The limits are 2 for semi-implicit Euler, 2 sqrt(2) for RK4, and 5.97 for DOP853. For RK4 the
+    result is 0.15 % larger, as an instability needs time to grow.
     """
 
     def excess(swing: float) -> float:
@@ -169,7 +170,7 @@ def accurate_limit(integrator: str) -> float:
 
 
 def first(excess: Callable[[float], float], low: float, high: float) -> float:
-    """Return the smallest value between two from which on `excess` is positive, or `high`."""
+    """Return the smallest value above `low` at which `excess` turns positive, or `high`."""
 
     def sign(value: float) -> float:
         return math.copysign(1, excess(value))
@@ -183,7 +184,7 @@ def first(excess: Callable[[float], float], low: float, high: float) -> float:
 
 
 def reached_share(impedance: float, excess: float) -> float:
-    """Return the share s of a row whose diagonal MuJoCo overestimates by a factor `excess`.
+    """Return the share s that a row reaches if MuJoCo overestimates its diagonal `excess` times.
 
     The regularizer R is (1 - d)/d times MuJoCo's diagonal; the share is A/(A + R) with the true
     diagonal A.
@@ -205,10 +206,10 @@ class SoftRow:
     def at_end_of_step(self, timestep: float) -> "SoftRow":
         """Return the row that MuJoCo's "discrete" solves in place of this one.
 
-        Its reference acceleration -b r' - k r is that of the residual at the end of the step, which
-        is r + h r' + h^2 r'' and has the rate r' + h r''. With S = 1 + h b + h^2 k that is
-        -((b + h k) r' + k r)/S at the start of the step. The softness (1 - d)/d is divided by S,
-        but stays at least that of `MAX_IMPEDANCE`.
+        "discrete" computes -b r' - k r with the residual r + h r' + h^2 r'' at the end of the step,
+        and its rate r' + h r''. With S = 1 + h b + h^2 k, this is -((b + h k) r' + k r)/S with the
+        residual at the start of the step. The softness (1 - d)/d is divided by S, but is never less
+        than that of `MAX_IMPEDANCE`.
         """
         h = timestep
         scale = 1 + h * self.damping + h**2 * self.stiffness
@@ -232,7 +233,7 @@ def direct(stiffness: float, damping: float, impedance: float) -> SoftRow:
 class SmallMotion:
     """Linear equations of the joints of a model, M q'' + D q' + K q = 0.
 
-    They hold on level ground about phi = 0. Where an equality ties the joints, D is 0.
+    They hold on level ground near phi = 0. D is 0 if an equality ties the joints.
     """
 
     mass: np.ndarray
@@ -242,7 +243,7 @@ class SmallMotion:
     damping: np.ndarray | float = 0.0
     """Damping matrix D of a tendon, shape (n, n)."""
     jacobian: np.ndarray | None = None
-    """The Jacobian J of an equality, shape (n,), where there is one."""
+    """The Jacobian J of an equality, shape (n,); None without an equality."""
 
     def exact(self, timestep: float) -> np.ndarray:
         """Return the matrix exp(h L) of (q, h q') over a `timestep` h [s], without the equality."""
@@ -277,8 +278,8 @@ class SmallMotion:
 def small_motion(scene: Scene, constrained: bool = False) -> SmallMotion:
     """Return the small motion of a scene on level ground.
 
-    That of a sliding load is in u and phi, that of a frozen one in phi. If `constrained`, that of a
-    frozen one is in u and the can's roll, which the equality u = a roll ties.
+    The coordinates are u and phi for a sliding load, and phi for a frozen one. If `constrained`,
+    those of a frozen load are u and the can's roll, tied by the equality u = a roll.
     """
     moment = scene.load.moment
     radius = scene.can.radius

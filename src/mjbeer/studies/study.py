@@ -1,4 +1,4 @@
-"""A study: checks that are measured and kept on disk one by one, even if it is interrupted."""
+"""A study: checks whose results are saved one by one, so that an interruption loses none."""
 
 import json
 import os
@@ -20,13 +20,13 @@ from mjbeer.output import files
 from mjbeer.output.jobs import Job, finished_jobs
 
 FAILED = {True: "", False: " **FAIL**"}
-"""Marks what did not pass in a table."""
+"""The mark in a table behind what passed, and what did not."""
 _PACKAGES = ("mjbeer", "mujoco", "numpy", "scipy", "numba", "heyoka")
 
 
 @dataclass
 class Study:
-    """Results with the settings and the machine that they belong to."""
+    """The results of checks, with the settings and the machine that they belong to."""
 
     command: str
     """The command that makes such a study."""
@@ -67,7 +67,7 @@ class Study:
         return {"command": self.command, "settings": self.settings, "machine": self.machine}
 
     def save(self, path: pathlib.Path) -> None:
-        """Write the study to a file, as lines of JSON: what it is of, and a line each result."""
+        """Write the study as lines of JSON: what it is about, then a line for each result."""
         lines = [to_json(self.about)]
         for result in self.results:
             lines.append(to_json(result.as_json()))
@@ -84,29 +84,28 @@ def run(
 ) -> Study:
     """Measure checks on all cores and return them as a study; `console` shows a progress bar.
 
-    Every result is in the file at `path` as soon as it is there, and the study that is in it is
-    gone on with. So is that in the file at `finished`, which stays as it is, if its settings and
-    its machine are the same. Functions that measure must be ones that can be pickled.
+    Every result is saved at `path` at once. If `path` already has a study, it is continued. If not,
+    the study at `finished` is continued, provided that its settings and its machine are the same;
+    its file stays as it is. The functions that measure must be ones that can be pickled.
 
     Raises:
       OSError: if the system ends one of the processes.
       OutputError: if the file cannot be written.
-      ParameterError: if a file is there, but is no study of this command, or the one at `path` is
-        of other settings or of another machine.
+      ParameterError: if a file exists but has no study of this command, or the study at `path` has
+        other settings or is of another machine.
     """
     study = Study(command, settings, machine())
-    for kept in (path, finished):
-        if kept is None or not kept.exists():
+    for source in (path, finished):
+        if source is None or not source.exists():
             continue
-        stored = Study.load(kept, command)
-        if (stored.settings, stored.machine) == (study.settings, study.machine):
+        stored = Study.load(source, command)
+        if stored.settings == study.settings and stored.machine == study.machine:
             study = stored
             if console is not None:
-                console.print(
-                    f"going on from {kept}", highlight=False, markup=False, soft_wrap=True
-                )
+                message = f"going on from {source}"
+                console.print(message, highlight=False, markup=False, soft_wrap=True)
             break
-        if kept == path:
+        if source == path:
             raise ParameterError(
                 f"{path} has a study of other settings, or of another machine: "
                 "remove it, or name another folder"
@@ -124,7 +123,7 @@ def run(
 
 
 def run_checks(checks: Sequence[Check], console: Console | None) -> Generator[Result]:
-    """Yield the results of checks as they are ready, from a process for each core.
+    """Measure checks in a process for each core, and yield their results as they are ready.
 
     Raises:
       OSError: if the system ends one of the processes.
@@ -136,7 +135,7 @@ def run_checks(checks: Sequence[Check], console: Console | None) -> Generator[Re
 
 
 def machine() -> dict[str, Any]:
-    """Return what run times and rounding depend on: processor, system, and versions of packages."""
+    """Return what run times and rounding depend on: processor, system and versions of packages."""
     versions = {}
     for distribution in distributions():
         versions[distribution.name] = distribution.version

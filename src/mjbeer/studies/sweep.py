@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 _MOST_SCENES = 10_000_000
 """Largest number of scenes, which take a gigabyte."""
 _SAVED_EVERY = 2.0
-"""Time between two savings [s]: what is done in it may be lost."""
+"""Time between two savings [s]: a process that is killed loses the scenes of this time."""
 _UNITS = {
     "incline": "rad",
     "phi0": "rad",
@@ -58,19 +58,20 @@ _UNITS = {
     "load_mass": "kg",
     "hoop_mass": "kg",
 }
-"""Units of the parameters of mjbeer's own scenes; a fill has none."""
+"""Units of the parameters of mjbeer's own scenes; a fill has no unit."""
 _ROUNDING_OF_STEPS = 1e-10
-"""Share of a timestep by which a duration may be longer than a whole number of them."""
+"""Share of a timestep by which a duration may exceed a whole number of timesteps."""
 
 Asked = str | Callable[[Run], float]
-"""A quantity that is measured if it is asked for: its name, or a function of a trajectory."""
+"""A quantity that the caller asks for: its name, or a function of a trajectory."""
 
 
 @dataclass(frozen=True)
 class Grid:
-    """All combinations of the values of what varies: each is a scene with a number.
+    """All combinations of the values of the parameters that vary.
 
-    Scenes that differ in the last parameter alone are neighbours.
+    Each combination is a scene, and has a number. Scenes that differ in the last parameter alone
+    are neighbours.
     """
 
     axes: Mapping[str, np.ndarray]
@@ -91,7 +92,7 @@ class Grid:
         return [int(place) for place in np.unravel_index(scene, self.shape)]
 
     def parameters(self, scenes: np.ndarray | list[int]) -> list[dict[str, float]]:
-        """Return the values of what varies in each of some scenes."""
+        """Return the values of the parameters that vary, for each of the given scenes."""
         if not self.axes:
             return [{}]  # the only scene
         columns = []
@@ -102,13 +103,15 @@ class Grid:
         return [dict(zip(self.axes, row, strict=True)) for row in zip(*columns, strict=True)]
 
     def name(self, scene: int) -> str:
-        """Return what varies as a scene has it, such as "incline[3] = 0.1, fill[0] = 0.5"."""
-        (values,) = self.parameters([scene])
-        named = zip(values.items(), self.places(scene), strict=True)
-        return ", ".join(f"{name}[{place}] = {value:.6g}" for (name, value), place in named)
+        """Return the values that a scene has, such as "incline[3] = 0.1, fill[0] = 0.5"."""
+        values = self.parameters([scene])[0]
+        parts = []
+        for name, place in zip(values, self.places(scene), strict=True):
+            parts.append(f"{name}[{place}] = {values[name]:.6g}")
+        return ", ".join(parts)
 
     def groups(self) -> Iterator[tuple[str, list[int]]]:
-        """Yield the scenes that share a value, with a name such as "fill[3]: "."""
+        """Yield for each value a prefix, such as "fill[3]: ", and the scenes that have it."""
         if not self.axes:
             yield "", [0]
             return
@@ -135,33 +138,34 @@ def sweep(
     progress: bool = True,
     **parameters: Any,
 ) -> "xarray.Dataset":
-    """Return many scenes, simulated over a `duration` [s] each, as a Dataset.
+    """Simulate many scenes over a `duration` [s] each, and return their results as a Dataset.
 
-    Units and this call are its attributes.
+    The Dataset's attributes say how it was made, and those of its variables have their units.
 
     `make` returns a scene for its parameters, as `mjbeer.sliding` does. Those of the `parameters`
     that are lists or one-dimensional arrays are the dimensions of the sweep, in the order given,
     and all combinations of their entries are simulated; `phi0` [rad] and `phi_dot0` [rad/s] may be
-    arrays, too, and come last. The other arguments are those of `simulate`, and each scene is what
-    `simulate` gives for it with a sample at the end, to the last bit.
+    arrays, too, and come last. The other arguments are those of `simulate`. Every result is, to the
+    last bit, the one that `simulate` gives for the scene with a sample at the end.
 
     Every sweep has the quantities "phi", "u", "phi_dot" and "u_dot" at the end, "error" (the
     estimate), "lowest_normal", "friction_needed", "parting_time" (from which N < 0; infinity if
     never), "energy_drift", "trusted" and "status" (0 where all went well). `quantity` asks for
-    more, one or a list: "period", or a function of a `Trajectory` that returns a number, which has
-    samples at every timestep and so takes longer. Without a tolerance "error" needs a second run of
-    each scene, of twice the time.
+    more, one or a list: "period", or a function that returns a number for a `Trajectory`. They need
+    samples at every timestep, so that the sweep takes longer. Without a tolerance "error" needs a
+    second run of each scene, which takes twice the time of the first.
 
     The scenes are simulated by an `executor` of `concurrent.futures`, by default by a thread for
-    each core; the result does not depend on it. With an `output`, whose name ends in .nc, what is
-    there is saved as NetCDF every two seconds, and the same call goes on from there after an
-    interruption. A file with other coordinates or attributes is refused, and so is one whose first
-    scene has other results than now.
+    each core; the result does not depend on it. With an `output`, whose name ends in .nc, the
+    results are saved as NetCDF every two seconds, and after an interruption the same call continues
+    from that file. A file with other coordinates or attributes is refused, and so is one whose
+    first scene has other results than now.
 
     A value that is not allowed is refused before anything runs. A scene that fails later has NaN
-    and a status, one that leaves the range of its model a status, and the attribute "failed" has a
-    line for each kind of reason, with the first scene of it. What liquids warn of is said
-    beforehand, once for each kind.
+    for its quantities, and a status that says so; a scene that leaves the range of its model keeps
+    its quantities and has a status, too. The attribute "failed" has a line for each kind of reason,
+    with the first scene that failed for it. Warnings about liquids are issued before the first
+    scene runs, once for each kind.
 
     Raises:
       ParameterError: if an argument is not allowed; for an entry of an array the message has its
@@ -183,28 +187,30 @@ def sweep(
         raise ParameterError(
             f"make must be a function that returns a scene, got {require.format_value(make)}"
         )
-    grid, fixed = _arranged({**parameters, "phi0": phi0, "phi_dot0": phi_dot0})
+    grid, fixed = _grid_and_constants({**parameters, "phi0": phi0, "phi_dot0": phi_dot0})
     angles = grid.axes["phi0"] if "phi0" in grid.axes else fixed["phi0"]
     require.warn_of_degrees(float(np.abs(angles).max()))
     setting = Setting.of(
         integrator, tolerance, rolling=rolling, timestep=timestep, friction=friction
     )
-    asked = _asked(quantity, grid)
-    times = _times(require.positive("duration", duration, "s"), setting, every_step=bool(asked))
+    asked = _quantities(quantity, grid)
+    times = _sample_times(
+        require.positive("duration", duration, "s"), setting, every_step=bool(asked)
+    )
     work = Work(make, fixed, setting, times, asked)
-    for message in _checked(work, grid):
+    for message in _check_values(work, grid):
         warnings.warn(message, LiquidWarning, stacklevel=2)
-    dataset = _empty(work, grid)
+    dataset = _empty_dataset(work, grid)
     if path is not None:
         if path.exists():
-            dataset = _continued(path, dataset, work, grid)
+            dataset = _load_unfinished(path, dataset, work, grid)
         _save(dataset, path)  # a file that cannot be written is an error before the first scene
-    _fill(dataset, work, grid, executor, path, progress)
+    _simulate_missing(dataset, work, grid, executor, path, progress)
     return dataset
 
 
-def _arranged(parameters: Mapping[str, Any]) -> tuple[Grid, dict[str, Any]]:
-    """Return the parameters that are lists or arrays, as a grid, and the others."""
+def _grid_and_constants(parameters: Mapping[str, Any]) -> tuple[Grid, dict[str, Any]]:
+    """Return the parameters that vary, lists or arrays, as a grid, and those that do not."""
     axes: dict[str, np.ndarray] = {}
     fixed: dict[str, Any] = {}
     for name, value in parameters.items():
@@ -222,30 +228,30 @@ def _arranged(parameters: Mapping[str, Any]) -> tuple[Grid, dict[str, Any]]:
     return grid, fixed
 
 
-def _asked(quantity: Asked | Sequence[Asked], grid: Grid) -> tuple[Quantity, ...]:
-    """Return the quantities that are asked for besides those of every sweep."""
-    always = [of_all.name for of_all in ALWAYS]
-    names = [*always, PERIOD.name, "trusted", "status", *grid.axes]
-    asked: list[Quantity] = []
-    listed = quantity if isinstance(quantity, (list, tuple)) else (quantity,)
+def _quantities(asked: Asked | Sequence[Asked], grid: Grid) -> tuple[Quantity, ...]:
+    """Return the quantities that the caller asks for besides those of every sweep."""
+    names = [quantity.name for quantity in ALWAYS]
+    names += [PERIOD.name, "trusted", "status", *grid.axes]
+    quantities: list[Quantity] = []
+    listed = asked if isinstance(asked, (list, tuple)) else [asked]
     for wanted in listed:
         if callable(wanted):
             name = getattr(wanted, "__name__", type(wanted).__name__)
             names.append(name)
-            asked.append(Quantity(name, wanted))
-        elif require.choice("quantity", wanted, names) == PERIOD.name and PERIOD not in asked:
-            asked.append(PERIOD)
+            quantities.append(Quantity(name, wanted))
+        elif require.choice("quantity", wanted, names) == PERIOD.name and PERIOD not in quantities:
+            quantities.append(PERIOD)
     for name in names:
         if names.count(name) > 1:
             raise ParameterError(
                 f"there are two quantities or parameters of the name {name!r}: "
                 "give one another name"
             )
-    return tuple(asked)
+    return tuple(quantities)
 
 
-def _times(duration: float, setting: Setting, every_step: bool) -> np.ndarray:
-    """Return the times of the samples of each run [s]: its end, or all timesteps.
+def _sample_times(duration: float, setting: Setting, every_step: bool) -> np.ndarray:
+    """Return the times of the samples of each run [s]: its end alone, or all timesteps.
 
     MuJoCo's integrators end at a timestep, the first one at or after the duration.
     """
@@ -262,40 +268,41 @@ def _times(duration: float, setting: Setting, every_step: bool) -> np.ndarray:
     return times
 
 
-def _checked(work: Work, grid: Grid) -> list[str]:
-    """Check that every value is allowed in some scene.
+def _check_values(work: Work, grid: Grid) -> list[str]:
+    """Refuse a value that is allowed in no scene; return the warnings about liquids, one a kind.
 
-    What comes back is what liquids have warned of, once for each kind.
+    Two values may be allowed although their combination is not. The scene of such a combination
+    fails later, as does a scene for which `make` raises an error of its own.
 
-    Two values may be allowed, and their combination not: such a scene is left to fail by itself, as
-    is one for which `make` raises an error of its own.
+    Raises:
+      ParameterError: if a value is allowed in no scene.
     """
     messages: dict[str, str] = {}
 
-    def problem(scene: int) -> Exception | None:
+    def refusal(scene: int) -> Exception | None:
+        """Return why a scene is refused; collect the warnings of one that is not."""
         with collect_liquid_warnings() as warned:
             try:
                 work.scene(*grid.parameters([scene]))
-            except (
-                ParameterError,
-                TypeError,
-            ) as error:  # the latter if `make` has no such parameter
+            except ParameterError as error:
+                return error
+            except TypeError as error:  # `make` has no such parameter
                 return error
             except Exception:
                 pass
         for message in warned:
-            messages.setdefault(_numberless(message), message)
+            messages.setdefault(_without_numbers(message), message)
         return None
 
     for name, scenes in grid.groups():
-        error = problem(scenes[0])
-        if error is not None and all(problem(scene) is not None for scene in scenes):
+        error = refusal(scenes[0])
+        if error is not None and all(refusal(scene) is not None for scene in scenes):
             raise ParameterError(f"{name}{error}") from error
     return list(messages.values())
 
 
-def _empty(work: Work, grid: Grid) -> "xarray.Dataset":
-    """Return the Dataset of a sweep of which nothing is simulated yet."""
+def _empty_dataset(work: Work, grid: Grid) -> "xarray.Dataset":
+    """Return the Dataset of a sweep before its first scene is simulated."""
     import xarray  # pandas comes with it: together they take half a second to import
 
     dims = tuple(grid.axes)
@@ -314,11 +321,11 @@ def _empty(work: Work, grid: Grid) -> "xarray.Dataset":
     for name, values in grid.axes.items():
         about = {"units": _UNITS[name]} if name in _UNITS else {}
         coordinates[name] = name, values, about
-    return xarray.Dataset(variables, coordinates, {**_call(work), "failed": ""})
+    return xarray.Dataset(variables, coordinates, {**_call_attributes(work), "failed": ""})
 
 
-def _call(work: Work) -> dict[str, Any]:
-    """Return what was called with what, as attributes of a Dataset."""
+def _call_attributes(work: Work) -> dict[str, Any]:
+    """Return the arguments of the call, as attributes of a Dataset."""
     call: dict[str, Any] = {"make": _label(work.make), "duration": float(work.times[-1])}
     for name, value in vars(work.setting).items():
         if name != "folder":
@@ -326,27 +333,27 @@ def _call(work: Work) -> dict[str, Any]:
     if work.setting.tolerance is not None:
         del call["integrator"]
     for name, value in work.fixed.items():
-        call[name] = value if isinstance(value, float) else _shown(value)
+        call[name] = value if isinstance(value, float) else _describe(value)
     for package in ("mjbeer", "mujoco"):
         call[f"version of {package}"] = version(package)
     return call
 
 
-def _shown(thing: Any) -> str:
-    """Return what an object is, without what is another in each process."""
+def _describe(thing: Any) -> str:
+    """Return the text of an object without its address, which differs between processes."""
     return re.sub(r" at 0x[0-9a-f]+", "", repr(thing))
 
 
-def _numberless(text: str) -> str:
-    """Return a text without its numbers: texts of one kind differ in nothing else."""
+def _without_numbers(text: str) -> str:
+    """Return a text without its numbers: texts of one kind differ in their numbers alone."""
     return re.sub(r"\d[\d.e+-]*", "", text)
 
 
 def _label(function: Any) -> str:
-    """Return the name of a function with that of its module, or what it is."""
+    """Return the name of a function with that of its module, or a text for a nameless object."""
     if hasattr(function, "__qualname__"):
         return f"{function.__module__}.{function.__qualname__}"
-    return _shown(function)
+    return _describe(function)
 
 
 def _save(dataset: "xarray.Dataset", path: pathlib.Path) -> None:
@@ -355,15 +362,15 @@ def _save(dataset: "xarray.Dataset", path: pathlib.Path) -> None:
         dataset.to_netcdf(temporary, engine="scipy")
 
 
-def _continued(
+def _load_unfinished(
     path: pathlib.Path, new: "xarray.Dataset", work: Work, grid: Grid
 ) -> "xarray.Dataset":
-    """Return the sweep in a file, if it is the same.
+    """Return the sweep in a file, which must be the same as the `new` one.
 
-    Its coordinates, attributes and the results of its first scene show that.
+    Its coordinates, its attributes and the results of its first scene show whether it is.
 
     Raises:
-      ParameterError: if it is not.
+      ParameterError: if it is another sweep, or the file has no sweep.
     """
     import xarray
 
@@ -380,8 +387,8 @@ def _continued(
     simulated = np.flatnonzero(stored["status"].values != NOT_YET)
     if len(simulated) > 0:
         scene = int(simulated[0])
-        (now,) = measure(work, grid.parameters([scene])).values
-        before = [values.values.flat[scene] for values in stored.values()]
+        now = measure(work, grid.parameters([scene])).values[0]
+        before = [variable.values.flat[scene] for variable in stored.values()]
         if not np.array_equal(now, before, equal_nan=True):
             raise ParameterError(
                 f"{path} has other results than this call, at {grid.name(scene)}: "
@@ -404,7 +411,7 @@ def _differences(stored: "xarray.Dataset", new: "xarray.Dataset") -> list[str]:
     return names
 
 
-def _fill(
+def _simulate_missing(
     dataset: "xarray.Dataset",
     work: Work,
     grid: Grid,
@@ -412,7 +419,7 @@ def _fill(
     path: pathlib.Path | None,
     progress: bool,
 ) -> None:
-    """Simulate the scenes that a sweep lacks into its arrays, and save them if there is a path."""
+    """Simulate the scenes that a sweep lacks, write them into its arrays, and save it to a path."""
     scenes = np.flatnonzero(dataset["status"].values == NOT_YET)
     arrays = [variable.values for variable in dataset.values()]  # in the order of measurement
     failures = _Failures(grid, dataset.attrs["failed"])
@@ -454,26 +461,26 @@ def _executor(given: Executor | None) -> Generator[Executor]:
 
 
 class _Failures:
-    """Why scenes have failed: of each kind of reason the scene with the least number."""
+    """Why scenes have failed: for each kind of reason, the first scene that failed for it."""
 
     def __init__(self, grid: Grid, text: str) -> None:
         self._grid = grid
-        self._lines = {_numberless(line): line for line in text.splitlines()}
+        self._lines = {_without_numbers(line): line for line in text.splitlines()}
 
     def add(self, scene: int, reason: str) -> None:
         """Note the reason of a scene."""
         line = f"scene {scene} ({self._grid.name(scene)}): {reason}"
-        kind = _numberless(line)
+        kind = _without_numbers(line)
         known = self._lines.get(kind)
-        if known is None or scene < _number(known):
+        if known is None or scene < _scene_number(known):
             self._lines[kind] = line
 
     @property
     def text(self) -> str:
         """A line for each kind, in the order of the scenes."""
-        return "\n".join(sorted(self._lines.values(), key=_number))
+        return "\n".join(sorted(self._lines.values(), key=_scene_number))
 
 
-def _number(line: str) -> int:
+def _scene_number(line: str) -> int:
     """Return the number of the scene with which a line begins."""
     return int(line.split()[1])

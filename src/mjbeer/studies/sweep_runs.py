@@ -27,11 +27,11 @@ from mjbeer.simulation.simulate import integrate
 from mjbeer.theory.scene import Scene
 
 _PIECE = 0.25
-"""Pieces of work grow up to this time [s]: little enough to be lost with a process."""
+"""Longest time that a piece of work should take [s]: no more is lost with a process."""
 _LARGEST_PIECE = 256
 """Largest number of scenes in a piece."""
 _WORKERS = 64
-"""Number of workers that an executor is taken to have that does not tell, such as a cluster's."""
+"""Assumed number of workers of an executor that does not say how many it has, as a cluster's."""
 
 WELL = 0
 REFUSED = 1
@@ -53,12 +53,12 @@ STATUSES = {
 
 
 class Quantity(NamedTuple):
-    """A number that is measured in every run of a sweep."""
+    """A number that is measured in each run of a sweep."""
 
     name: str
     measure: Callable[[Run], Any]
     unit: str | None = None
-    """Empty for a number without a unit, None where it is not known."""
+    """Empty for a number without a unit; None if the unit is not known."""
     long_name: str = ""
 
 
@@ -103,7 +103,7 @@ class Work:
     """Quantities besides those that every sweep has."""
 
     def scene(self, varied: Mapping[str, float]) -> tuple[Scene, float, float]:
-        """Return the scene of some values of what varies, with its phi0 [rad] and phi_dot0 [rad/s].
+        """Return the scene with these values, and its phi0 [rad] and phi_dot0 [rad/s].
 
         Raises:
           ParameterError: if a parameter is not allowed, or `make` does not return a scene.
@@ -124,8 +124,8 @@ class Outcome(NamedTuple):
     """What was measured on one scene."""
 
     values: list[float]
-    """A value for each quantity, NaN where there is none; then whether the run is trusted, and its
-    status."""
+    """A value for each quantity, NaN where it has none; then whether the run is trusted, and the
+    scene's status."""
     reason: str
     """Why the status is not `WELL`; empty if it is."""
 
@@ -142,7 +142,7 @@ class Measured(NamedTuple):
 
 @contextmanager
 def collect_liquid_warnings() -> Generator[list[str]]:
-    """Yield a list that gets what liquids warn of in this block and this thread."""
+    """Yield a list that collects the warnings about liquids in this block and this thread."""
     messages: list[str] = []
     token = warn_of_liquid.set(lambda message, *_, **__: messages.append(message))
     try:
@@ -152,9 +152,9 @@ def collect_liquid_warnings() -> Generator[list[str]]:
 
 
 def measure(work: Work, scenes: list[dict[str, float]]) -> Measured:
-    """Measure the quantities of scenes, of each of which the parameters that vary are given."""
+    """Measure the quantities of scenes, each given by its values of the parameters that vary."""
     began = time.perf_counter()
-    with collect_liquid_warnings():  # the sweep has passed them on before
+    with collect_liquid_warnings():  # the sweep has issued them before the first scene
         outcomes = [_outcome(work, parameters) for parameters in scenes]
     values = np.array([outcome.values for outcome in outcomes])
     reasons = [outcome.reason for outcome in outcomes]
@@ -162,7 +162,7 @@ def measure(work: Work, scenes: list[dict[str, float]]) -> Measured:
 
 
 def _outcome(work: Work, varied: Mapping[str, float]) -> Outcome:
-    """Simulate a scene; whatever it or a function of the user's raises, the other scenes go on."""
+    """Simulate a scene. An error, also of the user's functions, does not stop other scenes."""
     values = [math.nan] * (len(ALWAYS) + len(work.asked))
     try:
         scene, phi0, phi_dot0 = work.scene(varied)
@@ -201,13 +201,13 @@ def _status_of(error: Exception) -> int:
 
 
 def _in_a_line(error: Exception) -> str:
-    """Return an error in one line, with its kind if it is none of mjbeer's."""
+    """Return an error in one line, with its type unless it is one of mjbeer's."""
     kind = "" if isinstance(error, MjbeerError) else f"{type(error).__name__}: "
     return kind + " ".join(str(error).split())
 
 
 class _Pieces:
-    """Cuts the numbers of scenes into pieces of work, which grow as long as they are quick."""
+    """Cuts the numbers of scenes into pieces, which grow as long as they take little time."""
 
     def __init__(self, scenes: np.ndarray, largest: int) -> None:
         self._scenes = scenes
@@ -237,8 +237,8 @@ def run_all(
 ) -> Generator[tuple[np.ndarray, Measured]]:
     """Yield the numbers of scenes and what was measured on them, piece by piece.
 
-    `parameters` returns those that vary, for the numbers of scenes. What is measured on a scene
-    does not depend on the piece that it is in. If the generator is closed, pieces that have not
+    `parameters` returns the values of those that vary for some numbers of scenes. The results of a
+    scene do not depend on the piece that it is in. If the generator is closed, pieces that have not
     begun are cancelled.
 
     Raises:
@@ -266,7 +266,7 @@ def run_all(
 
 
 def _require_picklable(work: Work) -> None:
-    """Raise a ParameterError for work that cannot be sent to processes, as they may hang then."""
+    """Raise a ParameterError for work that cannot be pickled, with which processes may hang."""
     try:
         pickle.dumps(work)
     except (pickle.PicklingError, AttributeError, TypeError) as error:

@@ -1,11 +1,11 @@
-"""Tracks of filmed cans, and what they tell of the can.
+"""Tracks of filmed cans, and the fit that finds from a track what was in the can.
 
-- `track`: a track, and the tables in which people have it.
-- `unknowns`: what a fit looks for, and how the solver sees it.
-- `track_model`: the track that a scene would give.
-- `first_guess`: where the search begins.
-- `least_squares`: the search, and the errors of what it finds.
-- `doubts`: what speaks against it.
-- `result`: what is told of it, in words and pictures.
+- `track`: a track, and how it is read from a table.
+- `unknowns`: the values that a fit looks for, and the variables of the solver.
+- `track_model`: the track that a scene would give without noise.
+- `first_guess`: the values from which the search begins.
+- `least_squares`: the search, and the errors of the values that it finds.
+- `doubts`: reasons to doubt a fit.
+- `result`: the result, in words and pictures.
 - `fit`: all of this in one call.
 """

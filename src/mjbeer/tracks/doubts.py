@@ -1,4 +1,4 @@
-"""What speaks against a fit: that the model is wrong, or that the track leaves something open."""
+"""Reasons to doubt a fit: the model may be wrong, or the track may leave something open."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -10,15 +10,15 @@ from mjbeer.tracks.least_squares import Minimum
 from mjbeer.tracks.unknowns import Unknown, motion_slice, to_values
 
 _BY_CHANCE = 1e-3
-"""How often a right model may be doubted, as its residuals are smooth by chance."""
+"""Probability that a right model is doubted because its residuals are smooth by chance."""
 _OPEN = 0.3
-"""The part of a large change from which on an unknown is named as left open."""
+"""An unknown that may change by this part of a large change is named as left open."""
 
 
 def doubts(
     minimum: Minimum, alike: Sequence[Minimum], unknowns: Sequence[Unknown]
 ) -> tuple[str, ...]:
-    """Return what speaks against a minimum; `alike` are all that the track does not tell apart."""
+    """Return the doubts about a minimum; `alike` are those that the track cannot tell apart."""
     found = [
         *_smooth_residuals(minimum),
         *_wrong_measurements(minimum, unknowns),
@@ -31,10 +31,11 @@ def doubts(
 
 
 def chance_of_white_noise(residuals: np.ndarray) -> float:
-    """Return how often white noise has slow waves as strong as those of these residuals.
+    """Return the probability that white noise has slow waves as strong as these residuals have.
 
-    The slow waves of white noise have no more power than the others. F tests compare the slowest
-    sixteenth, eighth, quarter and half with the rest; the smallest chance counts once for each.
+    All waves of white noise have the same mean power. Four F tests compare the slowest sixteenth,
+    eighth, quarter and half of the waves with the others. The result is the smallest of the four
+    probabilities, multiplied by four.
     """
     power = fft.dct(residuals, norm="ortho") ** 2 + 1e-12  # no 0 / 0 where nothing is left
     chances = []
@@ -46,7 +47,7 @@ def chance_of_white_noise(residuals: np.ndarray) -> float:
 
 
 def _smooth_residuals(minimum: Minimum) -> Iterator[str]:
-    """Doubt the model if the rest of the places is smoother than noise."""
+    """Doubt the model if the residuals of the places are smoother than noise."""
     kept = minimum.weights.kept[0]
     chance = chance_of_white_noise(minimum.residuals[: len(kept)][kept])
     if chance < _BY_CHANCE:
@@ -56,7 +57,7 @@ def _smooth_residuals(minimum: Minimum) -> Iterator[str]:
 
 
 def _wrong_measurements(minimum: Minimum, unknowns: Sequence[Unknown]) -> Iterator[str]:
-    """Doubt what was measured where it is more than three of its errors off."""
+    """Doubt a measured value that is more than three of its errors from the fitted one."""
     values = to_values(unknowns, minimum.variables)
     for unknown in unknowns:
         if unknown.measured is None:
@@ -69,7 +70,7 @@ def _wrong_measurements(minimum: Minimum, unknowns: Sequence[Unknown]) -> Iterat
 
 
 def _open_directions(minimum: Minimum, unknowns: Sequence[Unknown]) -> Iterator[str]:
-    """Name what the track leaves open: unknowns that may change together by a large change."""
+    """Name unknowns that the track leaves open: together they may change by a large change."""
     directions, widths = minimum.uncertainty()
     for direction, width in zip(directions, widths, strict=True):
         if width <= 1:
@@ -82,7 +83,7 @@ def _open_directions(minimum: Minimum, unknowns: Sequence[Unknown]) -> Iterator[
 
 
 def _unfinished_search(minimum: Minimum) -> Iterator[str]:
-    """Say that the solver took as many steps as it may."""
+    """Say that the solver was stopped by its largest number of steps."""
     if not minimum.converged:
         yield "the search was stopped before it came to the nearest motion"
 
@@ -90,7 +91,7 @@ def _unfinished_search(minimum: Minimum) -> Iterator[str]:
 def _other_motions(
     minimum: Minimum, alike: Sequence[Minimum], unknowns: Sequence[Unknown]
 ) -> Iterator[str]:
-    """Name motions as near to the track that are not within the errors of this one."""
+    """Name motions that are as near to the track, but outside the errors of this one."""
     of_motion = motion_slice(unknowns)
     deviations = minimum.uncertainty().deviations
     for other in alike:

@@ -1,4 +1,4 @@
-"""Where the search begins: values on a grid, each with the place and the release that suit best."""
+"""Where the search begins: values on a grid, with the place and the release that fit best."""
 
 import itertools
 import math
@@ -13,24 +13,25 @@ from mjbeer.tracks.track_model import TrackModel
 from mjbeer.tracks.unknowns import Unknown
 
 _STRETCHES = (0.5, 2.0)
-"""By how much a sliding load's incline may differ from the one that was simulated."""
+"""Smallest and largest factor from the incline that was simulated to that of a sliding load."""
 
 
 class FirstGuess(NamedTuple):
-    """Values of all unknowns, and how badly they suit the track's places.
-
-    `misfit` is the standard deviation [m], NaN if there is no such motion.
-    """
+    """Values of the unknowns, and how far their motion is from the track."""
 
     values: dict[str, float]
     misfit: float
+    """Standard deviation of the track's places from the motion [m]; NaN if no motion has these
+    values."""
 
 
 def first_guesses(model: TrackModel, unknowns: Sequence[Unknown]) -> list[FirstGuess]:
-    """Return what was tried: first what suits better than all its neighbours on the grid.
+    """Return the guesses on a grid of values, the most promising first.
 
-    Then comes the best of each fill and damping, then the rest, each sorted by misfit. Motions near
-    the fill of the fastest swing may lie in two valleys with no ridge that the grid could show.
+    Guesses that fit better than all their neighbours on the grid come first. Then come the best
+    guess for each pair of fill and damping, and the rest; each group is sorted by misfit. The
+    second group is there for fills near that of the fastest swing: they may lie in two valleys, and
+    the grid may be too coarse to show the ridge between them.
     """
     axes = {}
     for unknown in unknowns:
@@ -58,9 +59,9 @@ def first_guesses(model: TrackModel, unknowns: Sequence[Unknown]) -> list[FirstG
 
 
 def guess_anywhere(model: TrackModel, values: dict[str, float]) -> FirstGuess:
-    """Return values with the place and the release that suit best, of all in the whole track.
+    """Return values with the place and the release that fit best, for releases at any time.
 
-    Releases are so close to each other that swings are in step for one of them.
+    The releases that are tried are so close together that the swings are in step for one of them.
     """
     count = min(2000, max(91, math.ceil(2.6 * model.duration / model.swing_time)))
     releases = model.track.time[0] + model.duration * np.linspace(-1, 0.8, count)
@@ -68,10 +69,10 @@ def guess_anywhere(model: TrackModel, values: dict[str, float]) -> FirstGuess:
 
 
 def guess_nearby(model: TrackModel, values: dict[str, float]) -> FirstGuess:
-    """Return values with the place and the release that suit best, up to some swings away.
+    """Return values with the place and the release that fit best, up to some swings away.
 
-    For a release some swings too early or late, the can is ahead or behind and rocks in step. The
-    release among the values is one of those that are compared.
+    If the release is some whole swings too early or too late, the can is ahead or behind although
+    it rocks in step. The release among the values is one of those that are compared.
     """
     releases = values["released"] + 17 * model.swing_time * np.linspace(-1, 1, 201)
     return _best_release(model, values, releases, most_points=2000)
@@ -93,16 +94,19 @@ def _best_release(
     rest = along - stretches[:, np.newaxis] * distances
     misfits = np.std(rest, axis=1)
     best = int(np.argmin(misfits))
-    suited = dict(values, released=float(releases[best]), place=float(np.mean(rest[best])))
+    best_values = dict(values)
+    best_values["released"] = float(releases[best])
+    best_values["place"] = float(np.mean(rest[best]))
     if incline_is_sought:
-        suited["incline"] = values["incline"] * float(stretches[best])
-    return FirstGuess(suited, float(misfits[best]))
+        best_values["incline"] = values["incline"] * float(stretches[best])
+    return FirstGuess(best_values, float(misfits[best]))
 
 
 def _stretches(distances: np.ndarray, along: np.ndarray) -> np.ndarray:
-    """Return the factors by which distances are most like places, shape (releases,).
+    """Return the factors on the distances that bring them nearest to the places, shape (releases,).
 
-    A sliding load's incline is to be multiplied by them: distances are nearly proportional to it.
+    A sliding load's incline is multiplied by the factor, as distances are nearly proportional to
+    it.
     """
     centred = distances - distances.mean(axis=1, keepdims=True)
     squares = np.maximum((centred**2).sum(axis=1), 1e-30)  # a can that still lies has none
@@ -110,14 +114,16 @@ def _stretches(distances: np.ndarray, along: np.ndarray) -> np.ndarray:
 
 
 def _tried_values(unknown: Unknown, model: TrackModel, unknowns: Sequence[Unknown]) -> list[float]:
-    """Return the values of one of the unknowns on the grid; what was measured has one.
+    """Return the values of an unknown on the grid: one if it was measured.
 
-    Incline, damping and the release of a late track look alike, and so do two fills of ice.
+    Several are needed, as another incline, damping or release may give nearly the same track if the
+    track begins late, and as ice swings equally fast at two fills.
     """
     guess = unknown.guess
     if unknown.measured is not None:
         return [guess]
-    if unknown.name == "incline" and not unknown.log:  # swings are to be in phase with the track's
+    # The swings must be in step with the track's. A sliding load's incline follows by `_stretches`.
+    if unknown.name == "incline" and not unknown.log:
         phi0_is_sought = any(other.name == "phi0" for other in unknowns)
         factors = (0.8, 1.0) if phi0_is_sought else (0.7, 0.85, 1.0, 1.2, 1.5)
         return [factor * guess for factor in factors]
@@ -133,10 +139,10 @@ def _tried_values(unknown: Unknown, model: TrackModel, unknowns: Sequence[Unknow
 def _tried_fills(scene: Scene, swings: float) -> list[float]:
     """Return fills on the grid for a track of so many swings.
 
-    Swings that go on for ever get out of step where the frequency is a little off. The frequency
-    grows from 0 to the largest and falls to 0 again, nearly evenly in the square root of the fill.
-    So many fills are tried that one between two of them is out of step by a radian at most at
-    either end, if it is in step in the middle.
+    Undamped swings whose frequency is a little off get out of step with the track. With the square
+    root of the fill the frequency grows from 0 to its largest value and falls to 0 again, nearly
+    evenly. The fills are so close together that a fill between two of them, if it is in step in the
+    middle of the track, is out of step by at most a radian at both ends.
     """
     if scene.dissipates:
         return np.linspace(0.05, 0.95, 19).tolist()

@@ -1,4 +1,4 @@
-"""The function `fit`: from a track and a guess to what was in the can."""
+"""The function `fit`, which finds from a track and a guess what was in the can."""
 
 import contextlib
 import inspect
@@ -34,11 +34,11 @@ from mjbeer.tracks.unknowns import (
 )
 
 BEND = 5e-3
-"""How far a lens usually bends the picture of a straight board [m]."""
+"""Usual bend of a straight board in the picture of a lens [m]."""
 _FIRST_ROUNDS = 16
-"""First guesses from which least squares begin."""
+"""Number of first guesses from which least squares begin."""
 _SEARCHES = 6
-"""Those of them that are followed to the end."""
+"""Number of their minima from which the search goes on to the end."""
 
 
 def fit(
@@ -50,26 +50,28 @@ def fit(
     bend: float | None = None,
     progress: bool = True,
 ) -> Fit:
-    """Return the scene whose motion, as MuJoCo simulates it, is that of a track.
+    """Return the scene whose motion, simulated by MuJoCo, comes nearest to a track.
 
-    Where the can was and when it was let go are always sought, and so is a bend of the track.
+    The place and the time at which the can was let go are always fitted, and so is a bend of the
+    track.
 
     Args:
-      track: what was filmed.
-      scene: what rolls, with a guess of all that is sought.
-      free: names of what is sought: "incline" [rad], "fill", "damping" (a factor on the scene's own
-        law) and "drag" [kg/m].
-      known: measured values with standard errors, which count as much as the track; also "scale",
-        by which the track is too long, and which a tracked roll gives.
+      track: the track that was filmed.
+      scene: the scene, with guesses of the parameters that are to be fitted.
+      free: names of the parameters that are to be fitted: "incline" [rad], "fill", "damping" (a
+        factor on the scene's own law) and "drag" [kg/m].
+      known: values that were measured besides the track, by name, each with its standard error;
+        they are fitted, too. One may be "scale", the factor by which the track is too long, which
+        otherwise only a tracked roll gives.
       phi0: the load's angle when the can is let go, at rest: a number [rad], "level" for a level
         surface, or "free".
-      bend: how far a lens bends the track about [m]: 5 mm or 1/400 of a shorter way by default,
-        not at all if 0.
+      bend: usual size of the bend of the track by a lens [m]; by default 5 mm, or 1/400 of the
+        track's length if that is less. With 0 the track is straight.
       progress: whether a terminal shows a progress bar.
 
     Raises:
-      ParameterError: if an argument is not allowed, or the scene has not what is sought.
-      MjbeerError: if no motion of such a scene is like the track.
+      ParameterError: if an argument is not allowed, or the scene has no such parameter.
+      MjbeerError: if no motion of such a scene comes near the track.
     """
     require.instance("track", track, Track)
     require.instance("scene", scene, Scene)
@@ -87,7 +89,8 @@ def fit(
     _require_parameters(scene, names)
     unknowns = make_unknowns(names, track, scene, measured)
     model = TrackModel(track, scene, phi0)
-    with warnings.catch_warnings(action="ignore"):  # of guesses; the fitted run has its own
+    # Warnings about guesses do not matter; those of the fitted run are in the result.
+    with warnings.catch_warnings(action="ignore"):
         minima = _search(model, unknowns, progress)
         if not minima:
             raise MjbeerError(f"no motion of such a scene is like the track, got {scene!r}")
@@ -97,7 +100,7 @@ def fit(
 def _measurements(
     track: Track, known: Mapping[str, tuple[float, float]] | None, bend: float | None
 ) -> dict[str, Measurement]:
-    """Return what is known by name, with a bend of 0 give or take its usual size."""
+    """Return the measured values by name; a bend of 0, give or take its usual size, is one."""
     if bend is None:
         bend = min(BEND, float(np.ptp(track.along)) / 400)
     measured = {}
@@ -114,7 +117,7 @@ def _measurements(
 
 
 def _require_parameters(scene: Scene, names: Collection[str]) -> None:
-    """Raise an error if something of these is sought that the scene was made without."""
+    """Raise an error if a parameter is sought that the scene was made without."""
     make = scene.made_by.function if scene.made_by else Scene
     arguments = inspect.signature(make).parameters
     for name in FITTABLE:
@@ -124,16 +127,16 @@ def _require_parameters(scene: Scene, names: Collection[str]) -> None:
 
 
 def _search(model: TrackModel, unknowns: tuple[Unknown, ...], progress: bool) -> list[Minimum]:
-    """Return the different minima that were found, the best first."""
+    """Return the distinct minima that are found, the best first."""
     console = terminal.STDERR if progress else None
     with terminal.progress_bar(console, 1 + _SEARCHES) as step:
         step("looking for starts")
-        begun = []
+        first_minima = []
         for guess in first_guesses(model, unknowns)[:_FIRST_ROUNDS]:
             with contextlib.suppress(ValueError):  # SciPy's, where there is no such motion
-                begun.append(first_round(model, unknowns, guess))
+                first_minima.append(first_round(model, unknowns, guess))
         minima = []
-        for minimum in distinct(unknowns, begun)[:_SEARCHES]:
+        for minimum in distinct(unknowns, first_minima)[:_SEARCHES]:
             step("fitting")
             with contextlib.suppress(ValueError):
                 second = next_round(model, unknowns, minimum)
@@ -142,7 +145,7 @@ def _search(model: TrackModel, unknowns: tuple[Unknown, ...], progress: bool) ->
 
 
 def _result(model: TrackModel, unknowns: tuple[Unknown, ...], minima: list[Minimum]) -> Fit:
-    """Return the fit of the best minimum: of those as good, the one nearest to the guess."""
+    """Return the fit of the minimum nearest to the guess, among those as good as the best."""
     alike = as_good_as_best(minima)
     best = nearest_to_guess(unknowns, alike)
     values = to_values(unknowns, best.variables)

@@ -1,4 +1,4 @@
-"""Least squares: the values whose motion is nearest to a track, and how far they may be off."""
+"""Least squares: the values whose motion comes nearest to a track, and their errors."""
 
 import math
 from collections.abc import Sequence
@@ -19,20 +19,20 @@ from mjbeer.tracks.unknowns import (
 )
 
 _FAR = 6.0
-"""Standard deviations of noise from which on a point is left out."""
+"""A point that is farther from the motion is left out, in standard deviations of the noise."""
 _LEAST_NOISE = 1e-6
-"""The noise that a track has at least, [m] or [rad]: that of the simulated motions."""
+"""The least noise of a track, [m] or [rad]: that of the simulated motions."""
 _SAME = 1e-2
-"""How far variables of one and the same minimum may be apart; 1 is a large change."""
+"""Largest difference of a variable between two results that are one minimum."""
 _TOLD_APART = 9.0
-"""The difference of costs from which on a track tells minima apart: three standard errors."""
+"""Difference of costs at which a track tells two minima apart: three standard errors, squared."""
 
 
 class Weights(NamedTuple):
-    """By what distances from the track are divided, and which points count.
+    """The weights of the points of a track.
 
-    `noise` is the standard deviation of each channel [m] or [rad], shape (channels, 1); `kept` has
-    the shape (channels, points).
+    `noise` is the standard deviation of each channel, by which its residuals are divided, [m] or
+    [rad], shape (channels, 1). `kept` says which points count, shape (channels, points).
     """
 
     noise: np.ndarray
@@ -40,10 +40,10 @@ class Weights(NamedTuple):
 
 
 class Uncertainty(NamedTuple):
-    """How far the variables of a minimum may be off, if the model is right.
+    """The errors of the variables of a minimum, if the model is right.
 
-    Rows of `directions` are independent combinations of the variables; along each the standard
-    error is that of `widths`.
+    The rows of `directions` are combinations of the variables with independent errors, whose
+    standard deviations are `widths`.
     """
 
     directions: np.ndarray
@@ -51,49 +51,49 @@ class Uncertainty(NamedTuple):
 
     @property
     def covariance(self) -> np.ndarray:
-        """Return the covariance of the variables, shape (unknowns, unknowns)."""
+        """The covariance matrix of the variables, shape (unknowns, unknowns)."""
         return (self.directions.T * self.widths**2) @ self.directions
 
     @property
     def deviations(self) -> np.ndarray:
-        """Return the standard deviations of the variables."""
+        """The standard deviations of the variables, shape (unknowns,)."""
         return np.sqrt(np.diag(self.covariance))
 
     @property
     def correlation(self) -> np.ndarray:
-        """Return the correlation of the variables, shape (unknowns, unknowns)."""
+        """The correlation matrix of the variables, shape (unknowns, unknowns)."""
         return self.covariance / np.outer(self.deviations, self.deviations)
 
 
 @dataclass(frozen=True, eq=False)
 class Minimum:
-    """What a round of least squares found."""
+    """The result of a round of least squares."""
 
     variables: np.ndarray
     """The solver's variables of the unknowns."""
     residuals: np.ndarray
-    """What is left of the track's points, channel by channel, then of the measured values, all
-    divided by their errors."""
+    """The residuals of the track's points, channel by channel, and then those of the measured
+    values, all divided by their standard errors."""
     jacobian: np.ndarray
     """The derivatives of the residuals, shape (residuals, unknowns)."""
     converged: bool
-    """Whether the solver was not stopped by its largest number of steps."""
+    """Whether the solver came to an end within its largest number of steps."""
     weights: Weights
     """The weights of this round."""
     next_weights: Weights
-    """The weights that suit what is left."""
+    """The weights that follow from the residuals."""
     cost: float
     """Minus twice the logarithm of the likelihood with the next weights, up to a constant."""
 
     def uncertainty(self) -> Uncertainty:
-        """Return how far the variables may be off."""
+        """Return the errors of the variables."""
         _, sizes, directions = np.linalg.svd(self.jacobian, full_matrices=False)
         widths = 1 / np.maximum(sizes, 1e-6)  # finite where a direction changes nothing
         return Uncertainty(directions, widths)
 
 
 def first_round(model: TrackModel, unknowns: Sequence[Unknown], guess: FirstGuess) -> Minimum:
-    """Return the minimum that is found from a guess, with its misfit as noise.
+    """Return the minimum that is found from a guess, whose misfit is taken for the noise.
 
     Raises:
       ValueError: if there is no such motion.
@@ -105,7 +105,7 @@ def first_round(model: TrackModel, unknowns: Sequence[Unknown], guess: FirstGues
 
 
 def next_round(model: TrackModel, unknowns: Sequence[Unknown], minimum: Minimum) -> Minimum:
-    """Return the minimum near to another, with the weights and the swing at release that suit it.
+    """Return the minimum near another one, with its next weights and its best release.
 
     Raises:
       ValueError: if there is no such motion.
@@ -127,7 +127,7 @@ def distinct(unknowns: Sequence[Unknown], minima: Sequence[Minimum]) -> list[Min
 
 
 def as_good_as_best(minima: Sequence[Minimum]) -> list[Minimum]:
-    """Return the minima that the track does not tell from the best of them."""
+    """Return the minima that the track cannot tell from the best of them."""
     least = min(minimum.cost for minimum in minima)
     return [minimum for minimum in minima if minimum.cost < least + _TOLD_APART]
 
@@ -186,7 +186,7 @@ def _residuals(
 
 
 def _suitable_weights(model: TrackModel, values: dict[str, float], unknowns: int) -> Weights:
-    """Return the noise of the track about a motion, and which points are not far from it."""
+    """Return weights from the distances of a track from a motion: noise, and points to be kept."""
     distances = np.abs(model.predict(values) - model.data)
     deviations = 1.4826 * np.median(distances, axis=1, keepdims=True)  # of normal noise
     kept = distances <= _FAR * deviations

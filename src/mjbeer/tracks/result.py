@@ -1,4 +1,4 @@
-"""What a fit found: its scene and values with errors, in words, as a plot and as a film."""
+"""The result of a fit: a scene and values with errors, in words, as a plot and as a film."""
 
 import math
 import os
@@ -15,37 +15,40 @@ from mjbeer.tracks.track import Track
 from mjbeer.tracks.unknowns import FITTABLE
 
 _LAW_ERROR = 0.1
-"""Relative error of a liquid's damping law itself: of W^1.5 and its polynomial."""
+"""Relative error of a liquid's damping law itself, that of W^1.5 and its polynomial."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Fit:
-    """A scene whose motion is that of a track: what follows from it, how well, and what does not.
+    """The scene whose motion comes nearest to a track, with the errors and the limits of the fit.
 
-    Dictionaries are by name: of the unknowns, or of what was tracked, "along" [m], and perhaps
-    "roll" and "phi" [rad].
+    The keys of `values` and `errors` are names of unknowns. Those of `noise` and `model` are names
+    of what was tracked: "along" [m], and perhaps "roll" and "phi" [rad].
     """
 
     track: Track
     scene: Scene
     """The scene as fitted: its incline is the true one less the rolling resistance."""
     values: dict[str, float]
-    """What was found of the scene, "damping" as a factor on its own law; "place" [m] and "released"
-    [s], where and when the can was let go, as the track counts; "bend", how far the middle of the
-    track is bent [m]; with a tracked roll "scale", by which the track is too long, and "turned",
-    the roll at first [rad]."""
+    """The fitted values.
+
+    Those of the scene have their names in it; "damping" is a factor on the scene's own law. "place"
+    [m] and "released" [s] say where and when the can was let go, in the coordinates of the track.
+    "bend" is how far the middle of the track is bent [m]. A track with a roll has two more: "scale"
+    is the factor by which the track is too long, and "turned" is the roll at the start [rad].
+    """
     errors: dict[str, float]
     """The standard errors of the values, if the model is right."""
     correlation: np.ndarray
-    """The correlation of these errors, shape (values, values)."""
+    """The correlation matrix of the errors, in the order of `values`."""
     noise: dict[str, float]
-    """The standard deviation of what was tracked from the model."""
+    """The standard deviation of the track from the model."""
     warnings: tuple[str, ...]
-    """What speaks against the model, and what the track cannot tell."""
+    """Reasons to doubt the model, and what the track leaves open."""
     run: Run
-    """The motion from the release on."""
+    """The simulated motion from the release on."""
     model: dict[str, np.ndarray]
-    """The track without noise, shape (points,) each."""
+    """The track as the fitted motion would give it without noise, shape (points,) each."""
 
     def lines(self) -> list[str]:
         """Return each value of the scene with its error in words, angles in degrees."""
@@ -90,30 +93,33 @@ class Fit:
     __repr__ = __str__
 
     def plot(self) -> tuple[Any, ...]:
-        """Plot track and model, the rest in mm, and the speed, in a new figure; return the axes."""
+        """Plot track and model, their difference in mm, and the speed in a new figure.
+
+        Returns the axes.
+        """
         from matplotlib import pyplot as plt
 
         from mjbeer.output.plots import COLOURS, REFERENCE, SIMULATED, STYLE
 
         time = self.track.time
-        rest = self.track.along - self.model["along"]
+        deviation = self.track.along - self.model["along"]
         run_time = np.append(time[0], self.values["released"] + self.run.time)
-        run_speed = np.append(0.0, self.run.u_dot)  # it lies still until it is let go
+        run_speed = np.append(0.0, self.run.u_dot)  # the can lies still until it is let go
         with plt.rc_context(STYLE | {"lines.markersize": 3}):
             figure = plt.figure(figsize=(8, 7.5), layout="constrained")
-            places, rests, speeds = figure.subplots(3, 1, sharex=True, height_ratios=(3, 2, 2))
+            places, deviations, speeds = figure.subplots(3, 1, sharex=True, height_ratios=(3, 2, 2))
             places.plot(time, self.track.along, ".", color=COLOURS[1], label="track")
             places.plot(time, self.model["along"], label="model", **SIMULATED)
             places.set_ylabel("along [m]")
             places.legend()
-            rests.plot(time, 1e3 * rest, ".", color=COLOURS[1])
-            rests.axhline(0, **REFERENCE)
-            rests.set_ylabel("track − model [mm]")
+            deviations.plot(time, 1e3 * deviation, ".", color=COLOURS[1])
+            deviations.axhline(0, **REFERENCE)
+            deviations.set_ylabel("track − model [mm]")
             speeds.plot(run_time, run_speed, **SIMULATED)
             speeds.set(xlabel="time [s]", ylabel="speed [m/s]", xlim=(time[0], time[-1]))
             title = "\n".join(self.lines())
             figure.suptitle(title, fontsize=STYLE["axes.labelsize"], x=0.02, ha="left")
-        return places, rests, speeds
+        return places, deviations, speeds
 
     def video(
         self,
@@ -131,8 +137,8 @@ class Fit:
         from mjbeer.drawing.video import write
 
         time = self.track.time - self.values["released"]
-        rest = self.track.along - self.model["along"]
-        places = np.interp(time, self.run.time, self.run.u) + rest
+        deviation = self.track.along - self.model["along"]
+        places = np.interp(time, self.run.time, self.run.u) + deviation
         style = FilmStyle(
             "A filmed can and the fitted motion",
             marks=("measured",),

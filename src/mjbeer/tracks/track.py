@@ -18,17 +18,19 @@ from mjbeer.exceptions import ParameterError
 _FEWEST_POINTS = 12
 """The fewest points of a track: twice the usual number of unknowns of a fit."""
 _LARGEST_ASIDE = 0.02
-"""How far the points of an axis are off their straight line at most (rms), as a share of its
-length: a mark on the rim is farther off within a metre."""
+"""Largest distance (rms) of the axis's points from their straight line, as a share of its length.
+
+A mark on the rim is farther from its line on tracks of up to a metre.
+"""
 
 
 @dataclass(frozen=True, eq=False)
 class Track:
     """Where a filmed can was, and when; all arrays have the shape (points,).
 
-    `time` is by any clock [s]; `along` is the place of the axis along the incline [m] and `roll`
-    the angle of a mark on the can [rad], both from anywhere and growing downhill; `phi` is the
-    load's angle to the incline [rad].
+    `time` is by any clock [s]. `along` is the place of the can's axis along the incline [m], and
+    `roll` is the angle of a mark on the can [rad]: both may begin anywhere, and grow downhill.
+    `phi` is the load's angle to the incline [rad].
 
     Raises:
       ParameterError: if an array is not finite, they differ in length, the times do not increase,
@@ -57,27 +59,28 @@ class Track:
 
     @property
     def channels(self) -> tuple[str, ...]:
-        """Return the names of what was tracked: "along", and perhaps "roll" and "phi"."""
+        """The names of the arrays that were tracked: "along", and perhaps "roll" and "phi"."""
         angles = [name for name in ("roll", "phi") if getattr(self, name) is not None]
         return ("along", *angles)
 
 
 class _Column(NamedTuple):
-    """What a column may be: its units, as parts of SI's, and a pattern of its usual headings."""
+    """A quantity that a column may have: its units in terms of SI's, and its usual headings."""
 
     units: dict[str, float]
     usual: str
+    """A pattern that matches the usual headings."""
 
 
 class _Used(NamedTuple):
-    """The index of a column that is read, and how much of SI's unit its own unit is."""
+    """The index of a column that is read, and the size of its unit in SI's."""
 
     index: int
     in_si: float
 
 
 class _Cell(NamedTuple):
-    """The text of a cell, and its place as messages name it."""
+    """The text of a cell, and its line and column for messages."""
 
     text: str
     place: str
@@ -93,17 +96,17 @@ _COLUMNS = {
     "roll": _Column(_ANGLES, "roll"),
     "phi": _Column(_ANGLES, "phi|φ"),
 }
-"""What is read. `docs/live.html` has the same."""
+"""The quantities that are read. `docs/live.html` has the same table."""
 _TITLE = re.compile(
     r"(?:latest *:)?(?:run *#?\d+ *[:|])? *([^\[(]*[^\[( ])? *(?:[\[(] *(.*?) *[\])])?"
 )
-"""How a heading begins: after which run it was, the name and the unit."""
+"""A heading: perhaps the number of a run, the name of the quantity, its unit in brackets."""
 _POINT = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?", re.IGNORECASE)
-"""A number with a decimal point, or without any: 1234.5."""
+"""A number with a decimal point, such as 1234.5, or a whole one."""
 _COMMA = re.compile(r"[-+]?(\d+,\d*|,\d+)(e[-+]?\d+)?", re.IGNORECASE)
-"""A number with a decimal comma: 1234,5."""
+"""A number with a decimal comma, such as 1234,5."""
 _GROUPED = re.compile(r"[-+]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?")
-"""A number with commas between thousands: 1,234.5. Nobody knows whether 1,234 is 1.234 or 1234."""
+"""A number with commas between thousands, such as 1,234.5. Alone, 1,234 may be 1.234 or 1234."""
 
 
 def read_track(
@@ -113,19 +116,20 @@ def read_track(
 ) -> Track:
     """Return the track in a table: a text with tabs, semicolons, commas or spaces between columns.
 
-    Numbers may have decimal commas, or commas between thousands, if others tell which they are.
-    Lines above the last heading are passed over, rows with an empty cell are left out. Units stand
-    in the headings, in brackets; without them they are s, m and rad. With x and y the places are
-    along the line through all of them, counted as the can went.
+    Numbers may have decimal commas, or commas between thousands, if other numbers show which of the
+    two they are. Lines above the last heading are ignored, and rows with an empty cell are left
+    out. Units stand in brackets in the headings; without them they are s, m and rad. If the table
+    has x and y, places are measured along the straight line through all points, in the direction in
+    which the can went.
 
     Args:
       path: the file.
-      columns: which column is "time", "frame", "x", "y", "roll" or "phi", by heading or number from
-        1, unless its heading is a usual one.
+      columns: the headings, or the numbers from 1 on, of the columns "time", "frame", "x", "y",
+        "roll" and "phi"; columns with usual headings need not be named.
       rate: the rate of numbered frames [1/s].
 
     Raises:
-      ParameterError: if it cannot be read so; the message has line and column.
+      ParameterError: if the table cannot be read; the message has line and column.
     """
     source = require.path(path)
     columns = require.instance("columns", {} if columns is None else columns, dict)
@@ -166,14 +170,14 @@ def _rows(source: pathlib.Path) -> dict[int, list[str]]:
     rows = {}
     for number, line in lines.items():
         spaced = " ".join(line.split()) if delimiter == " " else line
-        # Each line alone: a quotation mark that nobody closed spoils no more than its own.
+        # Each line is read alone, so that a missing quotation mark spoils no other line.
         row = next(csv.reader([spaced], delimiter=delimiter, skipinitialspace=True))
         rows[number] = [cell.strip(' "') for cell in row]
     return rows
 
 
 def _text(source: pathlib.Path) -> str:
-    """Return the text of a file, in UTF-8 or, as spreadsheets write it, UTF-16 with its mark."""
+    """Return the text of a file in UTF-8, or in UTF-16 with its mark, as spreadsheets write it."""
     try:
         raw = source.read_bytes()
     except OSError as error:
@@ -197,7 +201,7 @@ def _heading_line(source: pathlib.Path, rows: dict[int, list[str]]) -> int:
 def _used_columns(
     place: str, titles: list[str], columns: Mapping[str, str | int]
 ) -> dict[str, _Used]:
-    """Return which column has what, and its unit; `titles` are the headings at a place."""
+    """Return the columns that are read; `titles` are the headings, `place` their file and line."""
     if not set(columns) <= set(_COLUMNS):
         got = require.format_value(columns)
         raise ParameterError(f"columns are those of {', '.join(_COLUMNS)}, got {got}")
@@ -214,7 +218,7 @@ def _used_columns(
 
 
 def _column_index(place: str, titles: list[str], name: str, asked: str) -> int | None:
-    """Return the column that was asked for, or else that with a usual heading; None without one."""
+    """Return the index of the column asked for, or else of one with a usual heading, or None."""
     usual = _COLUMNS[name].usual
     meant = [
         index for index, title in enumerate(titles) if _is_meant(title, index + 1, asked, usual)
@@ -234,7 +238,7 @@ def _is_meant(title: str, number: int, asked: str, usual: str) -> bool:
 
 
 def _unit_in_si(place: str, titles: list[str], name: str, index: int) -> float:
-    """Return how much of SI's unit the unit of a column is, 1 if its heading has none."""
+    """Return the size of a column's unit in SI's, which is 1 if its heading has no unit."""
     title = titles[index]
     units = _COLUMNS[name].units
     _, unit = _name_and_unit(title)
@@ -275,7 +279,7 @@ def _is_number(text: str) -> bool:
 
 
 def _meaning_of_commas(cells: Iterable[_Cell]) -> str | None:
-    """Return what a comma is in these numbers: "decimal" or "thousands"; None if none tells."""
+    """Return what a comma means in these numbers: "decimal", "thousands", or None if unknown."""
     texts = [cell.text for cell in cells]
     if any(_COMMA.fullmatch(text) and not _GROUPED.fullmatch(text) for text in texts):
         return "decimal"
@@ -301,9 +305,9 @@ def _number(cell: _Cell, comma: str | None) -> float:
 
 
 def _along_line(source: pathlib.Path, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Return the places along the line through points [m], from its middle, counted as they went.
+    """Return places [m] along the straight line through points, from their middle.
 
-    It is the line with the least squares of distances from it.
+    The line has the least squares of distances; places grow in the direction of the motion.
     """
     points = np.stack([x - x.mean(), y - y.mean()], axis=1)
     _, sizes, directions = np.linalg.svd(points, full_matrices=False)

@@ -16,13 +16,13 @@ from mjbeer.tracks.track import Track
 from mjbeer.tracks.unknowns import OF_MOTION
 
 _TOLERANCE = 1e-5
-"""The tolerance of a motion [rad]: 0.3 micrometres of the way of a can."""
+"""The tolerance of a motion [rad]: a can of beer is at most 0.3 micrometres off."""
 _KEPT_MOTIONS = 100
-"""Motions that are kept: a search comes back to those of its last steps."""
+"""Number of motions that are kept: a search needs those of its last steps again."""
 
 
 def with_parameters(scene: Scene, changes: Mapping[str, float]) -> Scene:
-    """Return a scene made anew with other arguments, such as a fill."""
+    """Return the scene that its maker returns with some arguments changed, such as the fill."""
     if scene.made_by is None:
         return replace(scene, **changes)
     make, given = scene.made_by
@@ -30,12 +30,13 @@ def with_parameters(scene: Scene, changes: Mapping[str, float]) -> Scene:
 
 
 class TrackModel:
-    """What the track would be without noise, for any values of the unknowns.
+    """The track without noise, as a function of the unknowns.
 
     Args:
-      track: what was seen.
-      scene: what rolls, with all that is not among the values.
-      phi0: the load's angle at release [rad], unless the values have it; "level": a level surface.
+      track: the track that was filmed.
+      scene: the scene, whose parameters are replaced by those among the unknowns.
+      phi0: the load's angle at release [rad], or "level" for a level surface; it is replaced by a
+        "phi0" among the unknowns.
     """
 
     def __init__(self, track: Track, scene: Scene, phi0: float | str) -> None:
@@ -45,19 +46,20 @@ class TrackModel:
         self.channels = track.channels
         self.data = np.stack([getattr(track, name) for name in self.channels])
         self.duration = float(np.ptp(track.time))
-        # A load swings by a radian in 0.8 of it [s]. Without gravity, it does not matter.
+        # A load swings by a radian in 0.8 of this time [s]. Without gravity, any time will do.
         self.swing_time = math.sqrt(scene.can.radius / max(scene.gravity, 1.0))
-        # A cache of this model alone, which goes when it goes.
+        # Each model has a cache of its own, which is released with the model.
         self._kept_spline = functools.lru_cache(_KEPT_MOTIONS)(self._spline)
 
     def predict(self, values: Mapping[str, float]) -> np.ndarray:
-        """Return the track at its times, shape (channels, points); NaN if there is no such motion.
+        """Return the track at its times, shape (channels, points); NaN if no motion has the values.
 
-        It is bent by a parabola that is "bend" in the middle and 0 at both ends.
+        A lens bends it by a parabola, whose height is "bend" in the middle and 0 at both ends.
         """
         distance, phi = self.motion(values, self.track.time - values["released"])
         along = values["place"] + distance
-        # From measured places the parabola would share their noise, and the bend be biased.
+        # The parabola is taken at the model's places: at the measured ones it would share their
+        # noise, and the fitted bend would be biased.
         share = (along - self.track.along.min()) / np.ptp(self.track.along)
         bent = values.get("bend", 0.0) * 4 * share * (1 - share)
         predicted = {
@@ -68,12 +70,13 @@ class TrackModel:
         return np.stack([predicted[name] for name in self.channels])
 
     def motion(self, values: Mapping[str, float], since: np.ndarray) -> np.ndarray:
-        """Return distance [m] and phi [rad] at times since release [s], the start before it.
+        """Return distance [m] and phi [rad] at times `since` release [s], shape (2, *since.shape).
 
-        The shape is that of the times, after a first axis of two. They are NaN if there is no such
-        motion, so that the solver steps back.
+        Before the release the can lies at the start. If no motion has these values, the result is
+        NaN, so that the solver steps back.
         """
-        # Whole eighths of the track's time, so that many times of release share one spline.
+        # The duration is a whole number of eighths of the track's, so that motions with many times
+        # of release share one spline.
         eighth = self.duration / 8
         duration = eighth * max(1, math.ceil(float(since.max()) / eighth))
         parameters = tuple((name, values[name]) for name in OF_MOTION if name in values)
@@ -92,8 +95,8 @@ class TrackModel:
             phi0 = -scene.incline
         else:
             phi0 = self.phi0
-        # A spline's error is below 1e-6 radii for swings; it is 1e-4 where the can turns by half a
-        # radian from one node to the next, as it does at the end of an even acceleration.
+        # The spline's error is below 1e-6 radii for swings. It is 1e-4 radii where the can turns by
+        # half a radian between two nodes, as it does at the end of a constant acceleration.
         fastest = 2 * float(np.ptp(self.track.along)) / self.duration
         interval = min(0.25 * self.swing_time, 0.5 * scene.can.radius / fastest)
         count = min(5000, max(50, math.ceil(duration / interval)))
@@ -101,7 +104,7 @@ class TrackModel:
         return simulate(scene, duration, phi0, tolerance=_TOLERANCE, times=nodes)
 
     def _scene(self, values: Mapping[str, float]) -> Scene:
-        """Return the scene with these values, of which the damping is a factor on its law."""
+        """Return the scene with these values; "damping" is a factor on the scene's own law."""
         changes = {name: values[name] for name in ("incline", "fill", "drag") if name in values}
         scene = with_parameters(self.scene, changes)
         if "damping" not in values:
@@ -119,7 +122,7 @@ class TrackModel:
     def _spline(
         self, parameters: tuple[tuple[str, float], ...], duration: float
     ) -> interpolate.CubicHermiteSpline:
-        """Return distance and phi as a function of the time since release."""
+        """Return a spline of distance [m] and phi [rad] by the time since release [s]."""
         run = self.simulate(dict(parameters), duration)
         values = [run.distance, run.phi]
         rates = [run.u_dot, run.phi_dot]

@@ -1,4 +1,4 @@
-"""The unknowns of a fit: of each its guess, its bounds, and its variable in the solver."""
+"""The unknowns of a fit: their guesses, their bounds, and their variables in the solver."""
 
 import math
 from collections.abc import Collection, Mapping, Sequence
@@ -13,18 +13,21 @@ from mjbeer.theory.scene import Scene
 from mjbeer.tracks.track import Track
 
 FITTABLE = ("incline", "fill", "damping", "drag")
-"""What can be fitted of a scene; "damping" is a factor on the scene's own law."""
+"""The parameters of a scene that can be fitted; "damping" is a factor on its own law."""
 OF_MOTION = (*FITTABLE, "phi0")
-"""The unknowns that change the motion; the others say where, when and how the camera saw it."""
+"""The unknowns of the motion; the others say where, when and how the camera saw it."""
 _MIDDLE = 1e3
-"""The solver's variable at the guess. The solver takes its derivatives with steps in proportion to
-its variables, so all steps are about 1e-3 of a large change."""
+"""The solver's variable at the guess.
+
+The solver takes derivatives with steps that are 1e-6 of its variables. All steps are thus about
+1e-3 of a large change.
+"""
 _LOG_RANGE = 100.0
-"""The largest factor between a logarithmic unknown and its guess, either way."""
+"""The largest factor between a logarithmic unknown and its guess, up or down."""
 
 
 class _Kind(NamedTuple):
-    """What is known of an unknown before any track: a large change of it, and its bounds."""
+    """What is known of an unknown before a track is seen: a large change of it, and its bounds."""
 
     scale: float
     low: float = -math.inf
@@ -48,7 +51,7 @@ NAMES = tuple(_KINDS)
 
 
 class Measurement(NamedTuple):
-    """What was measured besides the track: a value and its standard error."""
+    """A value that was measured besides the track, and its standard error."""
 
     value: float
     error: float
@@ -58,8 +61,9 @@ class Measurement(NamedTuple):
 class Unknown:
     """A value that a fit looks for.
 
-    The solver sees a variable of it, of which a change by 1 is a large one: a change of the value
-    by `scale`, or of a logarithmic one by the factor exp(scale / abs(guess)).
+    The solver's variable of it changes by 1 where the value changes by `scale`, which is a large
+    change. Where the unknown is logarithmic, the value changes by the factor
+    exp(scale / abs(guess)).
     """
 
     name: str
@@ -96,8 +100,8 @@ def make_unknowns(
     """Return the unknowns of these names, with guesses from the measurements and the scene.
 
     Raises:
-      ParameterError: if the can of the track rolls the other way than the incline has it, or the
-        measured damping is not positive.
+      ParameterError: if the can of the track rolls up the scene's incline, or the measured damping
+        is not positive.
     """
     guesses = {
         "incline": scene.incline,
@@ -118,7 +122,7 @@ def make_unknowns(
         guess = guesses.get(name, 0.0)
         low = kind.low
         high = kind.high
-        # The terminal speed is a ratio of powers of these two.
+        # A terminal speed depends on a ratio of powers of incline and damping.
         log = name == "damping" or (name == "incline" and scene.attachment == "sliding")
         if log:
             low = guess / _LOG_RANGE
@@ -133,7 +137,7 @@ def make_unknowns(
 
 
 def _require_downhill(track: Track, incline: float) -> None:
-    """Raise an error if a can rolled up this incline."""
+    """Raise an error if the can of a track rolled up this incline."""
     distance = track.along[-1] - track.along[0]
     if incline * distance <= 0:
         uphill = "the can of this track does not roll down the scene's incline"
@@ -141,7 +145,7 @@ def _require_downhill(track: Track, incline: float) -> None:
 
 
 def _releases(track: Track) -> tuple[float, float]:
-    """Return the earliest and the latest time of release [s]: the can moves in a tenth or more."""
+    """Return the earliest and the latest release [s]: the can moves at least in the last tenth."""
     end = float(track.time[-1])
     duration = float(np.ptp(track.time))
     return end - 4 * duration, end - 0.1 * duration
@@ -159,11 +163,11 @@ def to_values(unknowns: Sequence[Unknown], variables: np.ndarray) -> dict[str, f
 
 
 def motion_slice(unknowns: Sequence[Unknown]) -> slice:
-    """Return which of the unknowns change the motion: the first ones."""
+    """Return the slice of the unknowns of the motion, which come first."""
     return slice(sum(unknown.name in OF_MOTION for unknown in unknowns))
 
 
 def distance_from_guess(unknowns: Sequence[Unknown], variables: np.ndarray) -> float:
-    """Return the sum of the large changes by which the motion is off its guess."""
+    """Return the distance of the motion from its guess: a sum of changes, 1 for each large one."""
     changes = np.abs(variables - _MIDDLE)
     return float(changes[motion_slice(unknowns)].sum())

@@ -18,13 +18,13 @@ from mjbeer.studies.benchmark.other_tools import (
 from mjbeer.studies.benchmark.points import Benchmark, Curve, Point, milliseconds, spread
 
 COMPARED = (1e-3, 1e-6)
-"""The errors [rad] at which run times are compared: what a motion is usually needed to."""
+"""The errors [rad] at which run times are compared, as motions are usually needed to these."""
 FINEST = 1e-11
 """A third error [rad], near rounding. There the order of a method alone decides, and RK4 has order
 4 while Gauss-Jackson has order 13."""
 RK4 = "MuJoCo RK4"
 OTHERS = (RK4, ODEINT, COMPILED_ODEINT, COMPILED_DOP853, HEYOKA)
-"""Compared with mjbeer's best reduced setting."""
+"""The settings and tools that are compared with mjbeer's best reduced setting."""
 _CONTACT = (
     Curve("contact", "Euler"),
     Curve("contact", "RK4"),
@@ -82,8 +82,8 @@ def tables(study: Benchmark) -> list[Table]:
 def ratios(study: Benchmark, errors: Sequence[float]) -> Table:
     """Return run times of RK4 and of other tools divided by that of the best reduced setting.
 
-    They are at equal error [rad]. In brackets are the smallest and the largest ratio of single
-    rounds.
+    The errors [rad] are equal. The smallest and the largest ratio of single rounds stand in
+    brackets.
     """
 
     def cell(best: Sequence[Point], found: Sequence[Point], error: float) -> str:
@@ -104,7 +104,7 @@ def ratios(study: Benchmark, errors: Sequence[float]) -> Table:
 
 
 def evaluations(study: Benchmark) -> Table:
-    """Return how often the fastest settings that keep an error evaluate the accelerations."""
+    """Return the number of evaluations of the fastest settings within each error."""
 
     def count(found: Sequence[Point], error: float) -> str:
         best = points.cheapest(found, error)
@@ -159,11 +159,11 @@ def ratio_range(study: Benchmark, name: str, error: float) -> str:
 
 
 def whole_calls(study: Benchmark) -> Table:
-    """Return the times of whole calls: of `mjbeer.simulate` to a tolerance, and of other tools.
+    """Return the times of whole calls of `mjbeer.simulate` to a tolerance, and of other tools.
 
-    mjbeer's goes from the scene to a trajectory that judges itself. Of the others the fastest
-    setting counts that keeps the error, which nobody knows beforehand; two of them compile the
-    equations of each scene anew.
+    A call of mjbeer goes from the scene to a trajectory that judges itself. For the other tools the
+    fastest setting within the error is shown, although nobody knows it beforehand. Two of them
+    compile the equations of each scene anew.
     """
     rows = []
     for case in study.cases:
@@ -194,7 +194,7 @@ def whole_calls(study: Benchmark) -> Table:
 
 
 def _with_setup(point: Point) -> str:
-    """Return the time of what is done once, and that of a run."""
+    """Return the set-up time and the run time of a point, as text."""
     setup = math.nan if point.setup is None else point.setup
     return f"{milliseconds(setup)} + {milliseconds(point.time)}"
 

@@ -2,7 +2,7 @@
 
 They are called in two ways: as a Python function of an array, which SciPy takes, and as a C
 function in place of MuJoCo's, so that mjbeer's DOP853 steps them without Python and without MuJoCo.
-What a scene's numbers are is compiled in, so that each scene takes some tenths of a second.
+The numbers of the scene are compiled in, which takes a few tenths of a second for each scene.
 """
 
 from collections.abc import Callable
@@ -20,11 +20,11 @@ from mjbeer.studies.benchmark.points import Case
 
 _ARRAY_FUNCTION = "float64[::1](float64, float64[::1])"
 _C_FUNCTION = types.void(types.intp, types.CPointer(types.float64))
-"""Of two addresses, as MuJoCo's functions are of those of an mjModel and an mjData."""
+"""A function of two addresses, as MuJoCo's functions take those of an mjModel and an mjData."""
 
 
 def array_function(case: Case) -> Callable[[float, np.ndarray], np.ndarray]:
-    """Return the compiled equations as a function of the time [s] and a state, an array."""
+    """Return the compiled equations as a function of the time [s] and the array of a state."""
     rates = njit(right_hand_side(case.scene))
     if case.scene.attachment == "frozen":
 
@@ -40,16 +40,17 @@ def array_function(case: Case) -> Callable[[float, np.ndarray], np.ndarray]:
 
 
 class CompiledEquations(Dynamics):
-    """The accelerations of a scene by its equations, where mjbeer's methods expect MuJoCo's.
+    """The accelerations of a scene by its equations, in place of MuJoCo's for mjbeer's methods.
 
-    Positions, rates and accelerations stand one after the other in an array of their own. The
-    model only says how many there are.
+    Positions, rates and accelerations stand one after the other in an array. MuJoCo's model only
+    says how many there are.
     """
 
     def __init__(self, case: Case) -> None:
         super().__init__(SteppedModel(model_numbers(case.scene, Setting())).model)
         self._rates = njit(right_hand_side(case.scene))
-        self._accelerate = _c_function(self._rates, case.scene.attachment)  # its code lives as long
+        # The compiled code exists as long as this attribute.
+        self._accelerate = _c_function(self._rates, case.scene.attachment)
         self._numbers = np.zeros(3 * self.model.nv)
         qpos, qvel, qacc = np.split(self._numbers, 3)
         self.kernel_view = self.kernel_view._replace(
@@ -67,7 +68,7 @@ class CompiledEquations(Dynamics):
 
 
 def _c_function(rates: Any, attachment: str) -> Any:
-    """Return a C function that writes accelerations behind the positions and rates it reads."""
+    """Return a C function that reads positions and rates, and writes accelerations behind them."""
     if attachment == "frozen":
 
         def frozen(_, address):

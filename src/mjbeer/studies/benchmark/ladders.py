@@ -28,37 +28,38 @@ def ladders(case: Case, quick: bool = False, missing: Container[str] = ()) -> La
 def _short_ladders(scene: Scene, quick: bool) -> Ladders:
     """Return the ladders of a motion of two seconds.
 
-    MuJoCo's integrators halve their timestep from one rung to the next; DOP853 starts with a larger
-    one and halves it in two rungs, and GaussJackson, whose error falls by four decades in a
-    halving, halves it in four. With `quick`, the ladders of MuJoCo's integrators end earlier, and
-    all others have at most every second rung.
+    MuJoCo's integrators halve their timestep at every rung. DOP853 starts with a larger timestep,
+    and takes two rungs for a halving. GaussJackson takes four, as a halving reduces its error by
+    four decades. With `quick`, the ladders of MuJoCo's integrators end earlier, and all others have
+    at most every second rung.
     """
     every = 2 if quick else 1
-    halved = tuple(16e-3 / 2**k for k in range(6 if quick else 10))
-    large = tuple(128e-3 / 2 ** (k / 2) for k in range(0, 15, every))
-    tolerances = tuple(10.0**-k for k in range(3, 13, 3 if quick else 1))
+    halvings = range(6 if quick else 10)
+    decades = range(3, 13, 3 if quick else 1)
+    of_mujoco = tuple(16e-3 / 2**k for k in halvings)
+    of_dop853 = tuple(128e-3 / 2 ** (k / 2) for k in range(0, 15, every))
+    of_gauss_jackson = tuple(32e-3 / 2 ** (k / 4) for k in range(0, 29, every))
+    tolerances = tuple(10.0**-k for k in decades)
     curves: Ladders = {}
     for rolling in ROLLINGS:
         if not supported(scene, rolling):
             continue
         for integrator in MUJOCO_INTEGRATORS:
-            curves[Curve(rolling, integrator)] = halved
-        curves[Curve(rolling, "DOP853")] = large
-        if rolling != "contact":  # which is too soft for a tolerance
+            curves[Curve(rolling, integrator)] = of_mujoco
+        curves[Curve(rolling, "DOP853")] = of_dop853
+        if rolling != "contact":  # a contact is too soft for a tolerance
             curves[Curve(rolling, CHOSEN, TOLERANCE)] = tolerances
-    curves[Curve("reduced", "GaussJackson")] = tuple(
-        32e-3 / 2 ** (k / 4) for k in range(0, 29, every)
-    )
+    curves[Curve("reduced", "GaussJackson")] = of_gauss_jackson
     for name, rolling in USUAL.items():
         if supported(scene, rolling):
-            curves[Curve(name, "Euler")] = halved
+            curves[Curve(name, "Euler")] = of_mujoco
     for name, tool in OTHER_TOOLS.items():
         curves[Curve(name, "", TOLERANCE)] = tool.tolerances[::every]
     return curves
 
 
 def _long_ladders() -> Ladders:
-    """Return the few settings of the motion of 1,000 s: those that somebody would choose for it."""
+    """Return the few settings that somebody would choose for the motion of 1,000 s."""
     return {
         Curve("equality, defaults", "Euler"): (2e-3,),
         Curve("contact, defaults", "Euler"): (2e-3,),

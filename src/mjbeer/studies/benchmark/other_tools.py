@@ -1,4 +1,4 @@
-"""Other tools that compute the motion of a scene, on equations of motion that are written by hand.
+"""Other tools that compute the motion of a scene, from equations of motion written by hand.
 
 A frozen load has the state (phi, phi_dot), and u = a phi; a sliding one (u, phi, u_dot, phi_dot).
 With p = depth sin(bottom) and q = depth cos(bottom) of the scene's `Oscillator`, and
@@ -12,9 +12,9 @@ M_e = m + m_can + I_can/a^2,
 
 with A the steady acceleration of footnote 4. An evaluation needs one sine and one cosine.
 
-The tools are SciPy's odeint, which is LSODA, with the equations interpreted and compiled; DOP853
-with the equations compiled, so that neither Python nor MuJoCo is called; and heyoka. A whole call
-of mjbeer is timed like another tool.
+The tools are SciPy's odeint, which is LSODA, with interpreted and with compiled equations; DOP853
+with compiled equations, so that neither Python nor MuJoCo is called; and heyoka. A whole call of
+mjbeer is timed as if it were another tool.
 """
 
 import importlib
@@ -36,34 +36,34 @@ from mjbeer.theory.scene import Scene
 RightHandSide = Callable[[float, Sequence[Any]], tuple[Any, ...]]
 Function = Callable[[Any], Any]
 ODEINT = "SciPy odeint"
-"""LSODA, whose loop is compiled, and which calls the equations in interpreted Python."""
+"""LSODA, whose loop is compiled, with equations in interpreted Python."""
 COMPILED_ODEINT = "SciPy odeint, compiled equations"
-"""The same, with equations that numba has compiled; it still calls them as a Python function."""
+"""The same with equations compiled by numba, which LSODA still calls as a Python function."""
 COMPILED_DOP853 = "DOP853, compiled equations"
-"""The method of SciPy's DOP853 in compiled code, mjbeer's own, which calls compiled equations."""
+"""The method of SciPy's DOP853 in mjbeer's compiled code, with compiled equations."""
 HEYOKA = "heyoka"
 WHOLE_CALL = "mjbeer.simulate"
-"""A whole call of mjbeer, from the scene to a run that has judged itself."""
+"""A whole call of mjbeer, from the scene to a run that judges itself."""
 _MOST_STEPS = 100_000
-"""Most steps of odeint between two samples: its own limit of 500 is too low for a second."""
+"""Largest number of odeint's steps between two samples; its default of 500 is too low."""
 
 
 class Samples(NamedTuple):
-    """What a run returns."""
+    """The motion that a run computed."""
 
     motion: Coordinates
     evaluations: int | None
-    """How often accelerations were evaluated, if that is known."""
+    """Number of evaluations of the accelerations; None if it is not known."""
 
 
 @dataclass(frozen=True)
 class Solver:
-    """A setting that has been set up: its run, which is timed, and what comes after."""
+    """A setting that is ready to run. Only the run is timed."""
 
     run: Callable[[], Any]
-    """Integrates the motion from its start, at every call."""
+    """Integrates the motion from its start; it can be called again and again."""
     read: Callable[[Any], Samples]
-    """Takes what `run` returned."""
+    """Returns the samples in the result of `run`."""
 
 
 @dataclass(frozen=True)
@@ -73,8 +73,8 @@ class OtherTool:
     tolerances: tuple[float, ...]
     """The tolerances to be tried, finest last."""
     set_up: Callable[[Case, float], Solver]
-    """Takes a case and a tolerance. Equations, models and compilation are done there, so that only
-    `Solver.run` need be timed."""
+    """Returns the solver of a case for a tolerance. All that is done once, such as compiling, is
+    done here, so that only `Solver.run` is timed."""
 
 
 def right_hand_side(
@@ -209,12 +209,12 @@ def _set_up_heyoka(case: Case, tolerance: float) -> Solver:
         *_, states = integrator.propagate_grid(grid)
         return states
 
-    # It has no evaluations, but Taylor series of each step.
+    # Taylor's method expands the motion in each step, and evaluates no accelerations.
     return Solver(run, lambda states: Samples(coordinates(case, states), None))
 
 
 def _set_up_whole_call(case: Case, tolerance: float) -> Solver:
-    """Set nothing up: what a call of mjbeer needs is part of it."""
+    """Set nothing up: a whole call includes all that it needs."""
     setting = Setting(tolerance=tolerance)
     run = partial(simulate, case.scene, case.phi0, case.phi_dot0, setting, case.times)
     return Solver(run, lambda found: Samples(found, None))

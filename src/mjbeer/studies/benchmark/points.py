@@ -1,4 +1,4 @@
-"""Cases of a benchmark, points on curves, and the Pareto front of those that none beats."""
+"""Cases of a benchmark, points on curves, and the Pareto front of the points that none beats."""
 
 import json
 import math
@@ -19,8 +19,11 @@ COMMAND = "mjbeer benchmark"
 SHIPPED = pathlib.Path(__file__).with_name("study.json")
 """The benchmark that comes with mjbeer: `mjbeer benchmark` wrote it."""
 INTERVAL = 32e-3
-"""Time between two samples [s]. It is a power of two times every timestep tried with MuJoCo's
-integrators, so that all runs have the same samples without interpolation."""
+"""Time between two samples [s].
+
+It is a power of two times each timestep that is tried with MuJoCo's integrators, so that all runs
+have the same samples without interpolation.
+"""
 _SHORT = INTERVAL * np.arange(65)
 """Times of the samples of a short motion [s]: 2.048 s."""
 _LONG = 32 * INTERVAL * np.arange(978)
@@ -36,7 +39,7 @@ class Case:
     phi0: float
     """Initial phi [rad]."""
     story: str
-    """The case in a few words, for titles."""
+    """The case in a few words, for a title."""
     phi_dot0: float = 0.0
     """Initial phi_dot [rad/s]."""
     times: np.ndarray = field(default_factory=lambda: _SHORT)
@@ -44,7 +47,7 @@ class Case:
 
     @property
     def is_long(self) -> bool:
-        """Return whether this is the long motion, which is for drift: few settings are run."""
+        """Whether this is a motion of 1,000 s, which shows drift, and is run with few settings."""
         return self.times is _LONG
 
     def truth(self) -> Trajectory:
@@ -71,18 +74,18 @@ CASES = {case.name: case for case in _ALL}
 TIMESTEP = "timestep"
 TOLERANCE = "tolerance"
 CHOSEN = "mjbeer"
-"""The method of runs to a tolerance, which choose their integrator and its steps."""
+"""The method of runs to a tolerance, in which mjbeer chooses the integrator and its steps."""
 LEVELS = tuple(10.0**-k for k in range(2, 13, 2))
-"""The errors [rad] for which tables have the fastest setting."""
+"""The errors [rad] for which tables show the fastest setting."""
 USUAL: dict[str, Rolling] = {"equality, defaults": "equality", "contact, defaults": "contact"}
-"""Models as people usually write them, by their way of rolling."""
+"""Models as people usually write them, each with its way of rolling."""
 
 
 class Curve(NamedTuple):
-    """A way of rolling and a method, run at a ladder of timesteps or tolerances."""
+    """A way of rolling and a method, to be run at several timesteps or tolerances."""
 
     model: str
-    """A way of rolling, the name of a model as people usually write it, or that of another tool."""
+    """A way of rolling, a model as people usually write it, or another tool, by name."""
     method: str
     """The integrator, or `CHOSEN`; empty for another tool, which has its own."""
     parameter: str = TIMESTEP
@@ -90,7 +93,7 @@ class Curve(NamedTuple):
 
     @property
     def label(self) -> str:
-        """The name of the curve, unlike that of any other."""
+        """The name of the curve, which no other curve has."""
         return ", ".join(part for part in (self.model, self.method) if part)
 
 
@@ -110,13 +113,13 @@ class Point:
     energy_drift: float | None = None
     """Largest change of the energy at a sample, divided by the swing's kinetic energy."""
     evaluations: int | None = None
-    """Evaluations of accelerations in a run; None where a tool does not tell."""
+    """Number of evaluations of the accelerations; None if the tool does not count them."""
     setup: float | None = None
-    """Time to build the model and for all else that is done once [s]."""
+    """Time to build the model, and to do all else that is done once [s]."""
     failure: str | None = None
     """The message of the exception if the run failed."""
     times: list[float] = field(default_factory=list)
-    """Run times in the rounds [s], of the processor."""
+    """Processor times of the run in the rounds [s]."""
 
     @property
     def curve(self) -> Curve:

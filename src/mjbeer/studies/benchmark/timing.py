@@ -34,8 +34,8 @@ from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
 
 REPEATS = 5
-"""Timed rounds. Each round times every setting once, so that a slow minute of the machine hits all
-settings alike."""
+"""Number of timed rounds. Each times every setting once, so that a slow minute of the machine
+affects all settings alike."""
 _WARM = 0.05
 """A run shorter than this [s] is run once before, so that caches and predictors are warm."""
 _BRIEF = 0.01
@@ -76,7 +76,7 @@ def run(names: Sequence[str], quick: bool, console: Console | None) -> Benchmark
 
 
 def _time_all(timed: Sequence[tuple[Point, Solver]]) -> None:
-    """Add a run time to each point; nothing is collected meanwhile."""
+    """Add a run time to each point, without garbage collection meanwhile."""
     gc.collect()
     gc.disable()
     try:
@@ -98,16 +98,16 @@ def _seconds(run: Callable[[], Any]) -> float:
 
 
 def _seconds_once(run: Callable[[], Any]) -> float:
-    """Return the processor's time in one run [s]: waiting for other programs is not in it."""
+    """Return the processor's time of one run [s], without the time that other programs take."""
     begin = time.process_time()
     run()
     return time.process_time() - begin
 
 
 def measure(case: Case, point: Point, truth: Trajectory) -> Solver:
-    """Set a point up, run it once, and store its set-up time, evaluations, errors and drift in it.
+    """Set up a point and run it once; return its solver, to be timed.
 
-    Errors are those against the `truth`. What was set up is returned, to be timed.
+    The point gets its set-up time, its evaluations, its errors against the `truth`, and its drift.
 
     Raises:
       MjbeerError: if it cannot be set up, or fails, or its end is not finite.
@@ -126,7 +126,7 @@ def measure(case: Case, point: Point, truth: Trajectory) -> Solver:
 
 
 def _set_up(case: Case, point: Point) -> Solver:
-    """Set a point up: another tool, a model as people usually write it, or a setting of mjbeer."""
+    """Set up a point: another tool, a model as people usually write it, or a setting of mjbeer."""
     if point.model in OTHER_TOOLS:
         return OTHER_TOOLS[point.model].set_up(case, point.value)
     if point.model in USUAL:

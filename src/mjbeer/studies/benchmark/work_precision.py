@@ -24,7 +24,7 @@ class _Line(NamedTuple):
     name: str
     colour: str
     style: str
-    """Line and marker, as matplotlib has them: dashes where MuJoCo is not called."""
+    """Line and marker in matplotlib's notation. A line is dashed if MuJoCo is not called."""
 
 
 _SMOOTH = {
@@ -49,9 +49,11 @@ _CONTACT = {
 """The curves of a scene whose can rolls by friction."""
 _CONTACT_CASE = "frozen"
 _FLOOR = 1e-13
-"""Smaller errors [rad] are rounding: a curve ends with its first point here."""
+"""Smaller errors [rad] are rounding: a curve ends with its first point at this floor."""
 _CEILING = 3.0
-"""Larger errors [rad] are no motion."""
+"""Points with larger errors [rad] are not drawn."""
+_X_LABEL = "run time of 2 s of motion [ms], without compiling"
+_Y_LABEL = "largest error of φ and u/a [rad]"
 _SUBTITLE = (
     "Each point is one setting. Further left is faster, further down is more exact. Setting up and "
     "compiling are not in the run time. Solid lines call MuJoCo; dashed lines integrate equations "
@@ -67,14 +69,7 @@ def draw(study: Benchmark, path: pathlib.Path | Picture) -> None:
     """
     cases = study.cases
     if len(cases) == 1:
-        (case,) = cases
-        title, _, start = _capital(CASES[case].story).partition(", ")
-        with chart(path, width=6.2, height=6.4, title=title, subtitle=start) as (axes,):
-            shown = _draw(axes, study.of(case), _SMOOTH)
-            _set_axes([axes], shown)
-            axes.set_xlabel("run time of 2 s of motion [ms], without compiling")
-            axes.set_ylabel("largest error of φ and u/a [rad]")
-            name_below([axes], 2)
+        _draw_single(study, cases[0], path)
         return
     has_contact = _CONTACT_CASE in cases
     count = len(cases) + has_contact
@@ -94,10 +89,21 @@ def draw(study: Benchmark, path: pathlib.Path | Picture) -> None:
             axes.set_visible(False)
         _set_axes(panels[:count], shown)
         for axes in panels[count - 2 : count]:
-            axes.set_xlabel("run time of 2 s of motion [ms], without compiling")
+            axes.set_xlabel(_X_LABEL)
         for axes in panels[0:count:2]:
-            axes.set_ylabel("largest error of φ and u/a [rad]")
+            axes.set_ylabel(_Y_LABEL)
         name_below(panels[: len(cases)], 3)
+
+
+def _draw_single(study: Benchmark, case: str, path: pathlib.Path | Picture) -> None:
+    """Draw the only scene of a study."""
+    title, _, start = _capital(CASES[case].story).partition(", ")
+    with chart(path, width=6.2, height=6.4, title=title, subtitle=start) as (axes,):
+        shown = _draw(axes, study.of(case), _SMOOTH)
+        _set_axes([axes], shown)
+        axes.set_xlabel(_X_LABEL)
+        axes.set_ylabel(_Y_LABEL)
+        name_below([axes], 2)
 
 
 def _draw(axes: Axes, found: Sequence[Point], lines: Mapping[Curve, _Line]) -> list[Point]:

@@ -1,7 +1,7 @@
 """The judge of runs: whether one is right, refused, doubted by itself, or wrong and silent.
 
-Two theories that share no code say what is right, where both have the motion: exact theory, and
-Taylor series.
+Two theories that share no code, exact theory and Taylor series, say what is right wherever both
+know the motion.
 """
 
 import math
@@ -37,11 +37,11 @@ REFUSED = "refused"
 WARNED = "doubted"
 UNDETECTED_ERROR = "silent"
 VERDICTS = (RIGHT, REFUSED, WARNED, UNDETECTED_ERROR)
-"""Every way in which a run can end.
+"""The ways in which a run can end.
 
 It is right if it is trusted, with an error of at most `record.ERROR` and of its tolerance; refused
-if it ends in an error that states the reason; doubted if it warns, right or wrong. It is silent if
-it is trusted and wrong, which must not occur.
+if it ends in an error that states the reason; doubted if it warns, whether it is right or wrong. It
+is silent if it is trusted and wrong, which must not happen.
 """
 BOTH = "two theories"
 THEORY = "exact theory alone"
@@ -50,19 +50,24 @@ NOBODY = "nobody"
 JUDGES = (BOTH, THEORY, SERIES, NOBODY)
 """The judges that a run can have.
 
-The series know no damping; exact theory refuses motions on a separatrix.
+The series do not cover damping, and exact theory does not cover motions on a separatrix.
 """
 REFUSALS = (ParameterError, ToleranceError, UnsupportedError, DivergenceError)
-"""The errors with which a run is refused. Others, such as a missing template, are no way to end."""
+"""The errors by which a run is refused. Any other, such as a missing template, stops the study."""
 _ROUNDING = float(np.finfo(float).eps)
 MAX_AMPLIFICATION = 10.0
-"""Largest ratio of the distance of the two theories to the effect of a rounding of each number of
-start and scene. In 2,400 random runs it was at most 2 where the distance needed an explanation."""
+"""Largest distance between the two theories that rounding explains.
+
+It is relative to the effect of rounding errors in the numbers of start and scene. In 2,400 random
+runs it was at most 2 where the distance needed an explanation.
+"""
 _FLOOR = 1e-11
-"""Distance of the two theories that needs no explanation [rad], relative beyond 1 rad: the rounding
-of some hundred swings, each of which the series take in twenty steps, is up to 1e-12."""
+"""Distance between the two theories that needs no explanation [rad], relative beyond 1 rad.
+
+The rounding of a hundred swings, each of which takes the series twenty steps, is up to 1e-12.
+"""
 _LAST_DIGITS = 4.0
-"""The same in roundings of the angle itself, which has few digits left after many turns."""
+"""The same in last digits of the angle, which after many turns are large."""
 
 
 @dataclass(frozen=True)
@@ -85,8 +90,7 @@ class Trial:
     moments: tuple[float, ...] | None = None
     """The times of the samples in timesteps, if they are not regular."""
     attached: bool = False
-    """Whether the can lies in a world of its own, into which `mjbeer.attach` put it, and which RK4
-    steps."""
+    """Whether `mjbeer.attach` puts the can into another world, which RK4 steps."""
 
     @property
     def times(self) -> np.ndarray:
@@ -113,26 +117,26 @@ class Outcome:
     """How a run ended."""
 
     verdict: str
-    """One of `VERDICTS`; empty if a run that does not doubt itself has no judge."""
+    """One of `VERDICTS`; empty for a trusted run without a judge."""
     judged_by: str = ""
     """One of `JUDGES`; empty if the run was refused."""
     error: float = math.inf
     """Largest error of phi and u/a [rad], relative beyond 1 rad."""
     admitted: float = math.inf
-    """The run's own estimate of its error [rad]."""
+    """The run's estimate of its own error [rad]."""
     says: str = ""
     """The run's warnings, or the text of the error that ended it."""
 
 
 class References(NamedTuple):
-    """What theory says of a motion."""
+    """The motion that theory predicts, or several where rounding decides."""
 
     judged_by: str
     """One of `JUDGES`."""
     motions: list[np.ndarray]
     """The motions that a run may be near: phi and u/a [rad] of each, shape (2, samples)."""
     distance: float
-    """How much the two theories differ [rad], relative beyond 1 rad; infinite if by more than
+    """Distance between the two theories [rad], relative beyond 1 rad; infinite if it is more than
     rounding explains."""
 
 
@@ -150,7 +154,7 @@ def judge(trial: Trial) -> Outcome:
         return Outcome(REFUSED, says=str(error))
     scene = trial.scene
     references = reference_motions(scene, run.time, trial.phi0, trial.phi_dot0)
-    # Where rounding decides, each is the motion of a start that doubles cannot tell from this one.
+    # Where rounding decides, there are several motions, from starts that doubles hardly tell apart.
     start = _start(scene, trial.phi0, trial.phi_dot0)
     angles = _angles(scene, run)
     distances = [_largest_distance(angles, motion, start) for motion in references.motions]
@@ -159,7 +163,7 @@ def judge(trial: Trial) -> Outcome:
     if math.isinf(references.distance):
         reason = "two theories differ by more than rounding explains"
         return replace(outcome, verdict=UNDETECTED_ERROR, says=reason)
-    # What a liquid warns of is of the model, and of no equation's solution.
+    # Warnings about a liquid concern the model, and not the solution of its equations.
     warned = (*run.solver_warnings, *run.rolling_warnings)
     if warned:
         return replace(outcome, verdict=WARNED, says="; ".join(warned))
@@ -172,7 +176,7 @@ def judge(trial: Trial) -> Outcome:
 
 
 def _simulate(trial: Trial) -> Run:
-    """Return the run, without warnings of MuJoCo's or its own: what counts is in its record."""
+    """Return the run. Warnings are not shown, as the run itself has those that count."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)
         return simulate(
@@ -190,7 +194,7 @@ def _simulate(trial: Trial) -> Run:
 
 
 def _judge_attached(trial: Trial) -> Outcome:
-    """Judge a can that was put into a world, while it can roll there; what warns is `attach`."""
+    """Judge a can that `attach` puts into a world, as long as it rolls; warnings are `attach`'s."""
     scene = trial.scene
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
@@ -224,7 +228,8 @@ def roll(
     swings = scene.attachment == "sliding"
     down = np.array([math.cos(tilt), 0, -math.sin(tilt)])
     normal = np.array([math.sin(tilt), 0, math.cos(tilt)])
-    half = (tilt + u / radius) / 2
+    half = (tilt + u / radius) / 2  # of the can's roll, for a quaternion
+    # The can is pressed into the slope by a billionth of its radius, so that they touch.
     place = radius * (1 - 1e-9) * normal + u * down
     data.joint("can-free").qpos = [*place, math.cos(half), 0, math.sin(half), 0]
     if swings:
@@ -235,8 +240,8 @@ def roll(
     swung = np.zeros(steps)  # of the load in it
     with quiet():
         for step in range(steps):
-            ahead = data.body("can-can").xmat.reshape(3, 3)[:, 0]
-            turned[step] = math.atan2(-ahead @ normal, ahead @ down)
+            x_axis = data.body("can-can").xmat.reshape(3, 3)[:, 0]
+            turned[step] = math.atan2(-x_axis @ normal, x_axis @ down)
             if swings:
                 swung[step] = data.joint("can-swing").qpos[0]
             mujoco.mj_step(model, data)
@@ -246,7 +251,7 @@ def roll(
 
 
 def _world_with(scene: Scene, timestep: float) -> mujoco.MjModel:
-    """Return a world with a slope, and a can on it."""
+    """Return a world with a slope and a can."""
     spec = mujoco.MjSpec()
     spec.option.timestep = timestep
     spec.option.integrator = int(mujoco.mjtIntegrator.mjINT_RK4)
@@ -260,11 +265,11 @@ def _world_with(scene: Scene, timestep: float) -> mujoco.MjModel:
 
 
 def reference_motions(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float) -> References:
-    """Return what theory says of the motion at increasing `times` [s]."""
+    """Return the motion that theory predicts at increasing `times` [s]."""
     try:
         by_theory = _angles(scene, exact_motion(scene, times, phi0, phi_dot0))
     except (NoLibrationError, ParameterError, ToleranceError):
-        by_theory = None  # on a separatrix, and beyond what rounding leaves it
+        by_theory = None  # on a separatrix, or where rounding leaves no digits
     by_series = _by_series(scene, times, phi0, phi_dot0)
     if by_series is None:
         if by_theory is None:
@@ -297,7 +302,7 @@ def _start(scene: Scene, phi0: float, phi_dot0: float) -> np.ndarray:
 
 
 def _largest_distance(motion: np.ndarray, reference: np.ndarray, start: np.ndarray) -> float:
-    """Return the largest distance of a motion from another [rad].
+    """Return the largest distance of a motion from a reference [rad].
 
     It is relative to the angle turned so far where that exceeds 1 rad.
     """
@@ -306,7 +311,7 @@ def _largest_distance(motion: np.ndarray, reference: np.ndarray, start: np.ndarr
 
 
 def _by_series(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float) -> np.ndarray | None:
-    """Return the motion by Taylor series; None if it takes too many steps, or is damped."""
+    """Return the motion by Taylor series; None if it is damped or takes too many steps."""
     if scene.dissipates:
         return None
     try:
@@ -318,11 +323,11 @@ def _by_series(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float) ->
 def perturbed_references(
     scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float
 ) -> Iterator[np.ndarray]:
-    """Yield motions, by series, of which one number of scene or start is changed by a rounding.
+    """Yield motions, by series, after one number of scene or start was changed in its last digit.
 
-    The incline is changed by a rounding of 1 rad: it lifts or lowers the next crest by as much as
-    rounding on the way there, and so shows whether a motion beside the separatrix passes it by
-    chance.
+    The incline is changed by the last digit of 1 rad. This lifts or lowers the next crest by as
+    much as rounding on the way there does, and so shows whether a motion near the separatrix passes
+    the crest by chance.
     """
     aside = _ROUNDING * max(1.0, abs(phi0))
     more = 1 + _ROUNDING

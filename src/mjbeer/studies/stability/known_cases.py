@@ -1,4 +1,4 @@
-"""Stiff and extreme cases, and those in which the search found errors, each with why it is one."""
+"""Stiff and extreme cases, and cases in which the search found errors, each with the reason."""
 
 import math
 from collections.abc import Iterator
@@ -15,7 +15,7 @@ from mjbeer.theory.scene import Scene, frozen, hoop, pendulum, sliding
 TOLERANCE = 1e-9
 """Tolerance of the runs that are made to a tolerance [rad]."""
 _STEPS = 300
-"""Timesteps a natural period."""
+"""Number of timesteps in a natural period."""
 _METAL = Can.sheet_metal()
 _SLIDING_OR_FROZEN = (("sliding", sliding), ("frozen", frozen))
 _SCENES = (
@@ -26,22 +26,22 @@ _SCENES = (
 _ADAPTED = ("tolerance",)
 _FIXED = ("reduced", "equality")
 _ALL = (*_FIXED, *_ADAPTED)
-"""The ways that must be accurate: RK4 in reduced models and by an equality, and a tolerance."""
+"""The settings that must be accurate: RK4 with "reduced" or "equality", and a tolerance."""
 
 
 class Variant(NamedTuple):
     """One way to simulate a case."""
 
     setting: str
-    """Name of the way: of rolling, integrator, and timestep or tolerance."""
+    """Way of rolling, integrator, and timestep or tolerance, in words."""
     trial: Trial
     within: float = math.inf
-    """Largest error that the run must have [rad], unless no model can have it and it must be
-    refused."""
+    """Largest error that the run may have [rad]. A scene that the way of rolling does not support
+    must be refused instead."""
 
 
 class KnownCase(NamedTuple):
-    """A case: its name, why it is one, and its variants."""
+    """A case: its name, the reason why it is a case, and its variants."""
 
     name: str
     why: str
@@ -50,11 +50,11 @@ class KnownCase(NamedTuple):
 
 def cases() -> list[KnownCase]:
     """Return all cases."""
-    return [*_stiff(), *_extreme(), *_found()]
+    return [*_stiff(), *_extreme(), *_found_by_search()]
 
 
 def natural_period(scene: Scene, phi_dot0: float = 0.0) -> float:
-    """Return the time scale of a motion [s]: that of a swing, a turn, or a fall by a radius."""
+    """Return the time of a swing, a turn, or a fall by a radius [s], whichever decides a motion."""
     try:
         frequency = scene.frequency()
     except NoEquilibriumError:
@@ -63,7 +63,7 @@ def natural_period(scene: Scene, phi_dot0: float = 0.0) -> float:
     return 2 * math.pi / fastest if fastest else 1.0
 
 
-def _tried(
+def _motion(
     name: str,
     why: str,
     scene: Scene,
@@ -72,9 +72,9 @@ def _tried(
     accurate: tuple[str, ...] = _ALL,
     periods: float = 5.0,
 ) -> KnownCase:
-    """Return a motion, some natural periods long, in every way of rolling and to a tolerance.
+    """Return a case with a variant for every way of rolling, and for a tolerance.
 
-    `accurate` has the ways that must be accurate.
+    Its motion lasts some natural `periods`. The settings in `accurate` must be accurate.
     """
     period = natural_period(scene, phi_dot0)
     timestep = period / _STEPS
@@ -95,7 +95,7 @@ def _tried(
             within = TOLERANCE if "tolerance" in accurate else math.inf
             setting = f"{rolling}, to a tolerance of {TOLERANCE:g}"
             variants.append(Variant(setting, trial, within))
-    # As for a can on a desk, whatever the scene.
+    # The setting of a can on a desk is tried with every scene.
     duration = min(max(periods * period, 0.1), 30.0)
     desk = Trial(scene, phi0, phi_dot0, timestep=1e-3, steps=_steps(duration, 1e-3))
     variants.append(Variant("reduced, RK4, 1 ms", desk))
@@ -103,7 +103,7 @@ def _tried(
 
 
 def _steps(duration: float, timestep: float) -> int:
-    """Return the number of timesteps of a duration, which allows for rounding."""
+    """Return the number of timesteps in a duration, to which rounding adds none."""
     return math.ceil(duration / timestep * (1 - 1e-10))
 
 
@@ -113,8 +113,8 @@ def _stiff() -> Iterator[KnownCase]:
     for ratio in (1e-3, 1e-2, 1.0, 1e2, 1e3):
         for kind, make in _SLIDING_OR_FROZEN:
             scene = make(can=Can.hoop(mass=ratio * Load.segment().mass))
-            yield _tried(f"{kind}, can {ratio:.0e} times the load", why, scene, 1.0)
-    yield _tried(
+            yield _motion(f"{kind}, can {ratio:.0e} times the load", why, scene, 1.0)
+    yield _motion(
         "pendulum on a wheel of 0.1 g",
         "J falls to a thousandth at phi = 0, where the load swings through in a thousandth of the "
         "period",
@@ -124,7 +124,7 @@ def _stiff() -> Iterator[KnownCase]:
     )
     why = "at pi the tendon that gives the model its J has no length and no direction"
     for beside in (0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3):
-        yield _tried(f"frozen, let go {beside:g} rad beside pi", why, frozen(), math.pi - beside)
+        yield _motion(f"frozen, let go {beside:g} rad beside pi", why, frozen(), math.pi - beside)
 
 
 def _extreme() -> Iterator[KnownCase]:
@@ -139,16 +139,16 @@ def _extreme() -> Iterator[KnownCase]:
             phi_dot0 = 0.0
         for kind, make in _SLIDING_OR_FROZEN:
             scene = make(gravity=gravity, can=_METAL)
-            yield _tried(f"{kind}, g = {gravity:g} m/s^2", why, scene, 1.0, phi_dot0)
+            yield _motion(f"{kind}, g = {gravity:g} m/s^2", why, scene, 1.0, phi_dot0)
     for kind, scene in _SCENES:
         yield from _extreme_starts(kind, scene)
-    yield _tried(
+    yield _motion(
         "point on the rim of a hoop, let go a quarter turn from the bottom",
         "at the bottom the point stands still, and J is the hoop's alone",
         hoop(),
         math.pi / 2,
     )
-    yield _tried(
+    yield _motion(
         "can with next to no inertia around a sliding load",
         "1e-20 kg m^2 are far below MuJoCo's smallest (mjMINVAL, 1e-15), and lost beside the "
         "load's 1e-5",
@@ -167,21 +167,24 @@ def _extreme_fills() -> Iterator[KnownCase]:
                 scene = make(fill=fill, can=can)
                 name = f"{kind}, {wall} can, fill {amount}"
                 if fill < 0.5:
-                    yield _tried(name, "a thin film of beer", scene, 1.0)
+                    yield _motion(name, "a thin film of beer", scene, 1.0)
                 elif fill == 1 or kind == "frozen":
                     why = "b = 0, or nearly: hardly any torque acts on the load"
-                    yield _tried(name, why, scene, 1.0)
+                    yield _motion(name, why, scene, 1.0)
                 else:
-                    half_period = natural_period(scene) / 2
-                    distance = scene.acceleration() / 2 * half_period**2
-                    why = f"rounding of the {distance:.0e} m that it rolls is not small beside b"
-                    # Only half a swing: where rounding disturbs the motion, a whole one would take
-                    # minutes.
-                    yield _tried(name, why, scene, 1.0, accurate=(), periods=0.5)
+                    yield _sliding_in_a_nearly_full_can(name, scene)
+
+
+def _sliding_in_a_nearly_full_can(name: str, scene: Scene) -> KnownCase:
+    """Return half a swing: where rounding disturbs the motion, a whole one would take minutes."""
+    half_period = natural_period(scene) / 2
+    distance = scene.acceleration() / 2 * half_period**2
+    why = f"rounding of the {distance:.0e} m that it rolls is not small beside b"
+    return _motion(name, why, scene, 1.0, accurate=(), periods=0.5)
 
 
 def _extreme_inclines() -> Iterator[KnownCase]:
-    """Yield motions on level and steep ground, and near the steepest incline that has a rest."""
+    """Yield motions on level and steep ground, and near the steepest one with an equilibrium."""
     for degrees in (0.0, 1e-8, 85.0):
         why = "level, or hardly tilted"
         accurate = _ALL
@@ -192,7 +195,7 @@ def _extreme_inclines() -> Iterator[KnownCase]:
         scenes = (("sliding, metal can", sliding(incline, can=_METAL)), ("frozen", frozen(incline)))
         for kind, scene in scenes:
             name = f"{kind}, incline {degrees:g} degrees"
-            yield _tried(name, why, scene, 0.5, accurate=accurate)
+            yield _motion(name, why, scene, 0.5, accurate=accurate)
     fold = math.sin(frozen().largest_incline())
     why = (
         "near the steepest incline with an equilibrium, eq. (53): a shallow well below, and a long "
@@ -206,7 +209,7 @@ def _extreme_inclines() -> Iterator[KnownCase]:
         else:
             side = "above"
             phi0 = math.pi / 2 - scene.incline
-        yield _tried(f"frozen, {abs(beside):.0e} {side} the fold", why, scene, phi0)
+        yield _motion(f"frozen, {abs(beside):.0e} {side} the fold", why, scene, phi0)
 
 
 def _extreme_starts(kind: str, scene: Scene) -> Iterator[KnownCase]:
@@ -215,11 +218,11 @@ def _extreme_starts(kind: str, scene: Scene) -> Iterator[KnownCase]:
     for beside, accurate in ((1e-2, _ADAPTED), (1e-6, ()), (1e-10, ())):
         _, top = scene.separatrix()
         name = f"{kind}, {beside:.0e} rad inside the separatrix"
-        yield _tried(name, why, scene, top - beside, accurate=accurate)
+        yield _motion(name, why, scene, top - beside, accurate=accurate)
     why = "the energy of a swing is tiny beside that of the spin"
     for spin in (1e2, 1e4):
-        yield _tried(f"{kind}, spun at {spin:.0e} rad/s", why, scene, 0.5, spin)
-    yield _tried(
+        yield _motion(f"{kind}, spun at {spin:.0e} rad/s", why, scene, 0.5, spin)
+    yield _motion(
         f"{kind}, let go at pi",
         "exactly on top a sliding load balances, unless rounding pushes it off, and a frozen one "
         "rolls down",
@@ -229,18 +232,20 @@ def _extreme_starts(kind: str, scene: Scene) -> Iterator[KnownCase]:
     )
 
 
-def _case(name: str, why: str, setting: str, trial: Trial, within: float = math.inf) -> KnownCase:
+def _single_run(
+    name: str, why: str, setting: str, trial: Trial, within: float = math.inf
+) -> KnownCase:
     """Return a case with one variant."""
     return KnownCase(name, why, (Variant(setting, trial, within),))
 
 
-def _found() -> Iterator[KnownCase]:
+def _found_by_search() -> Iterator[KnownCase]:
     """Yield the cases in which the random search found errors."""
     for kind, scene in (
         ("pendulum", pendulum(gravity=1e-3)),
         ("frozen", frozen(gravity=1e-3)),
     ):
-        yield _case(
+        yield _single_run(
             f"{kind} in contact in a gravity of 1e-3 m/s^2",
             "MuJoCo's solver stops once its cost falls by less than 1e-8 m^2/s^4: its tolerance "
             "has to scale with g^2",
@@ -259,7 +264,7 @@ def _found() -> Iterator[KnownCase]:
     can = Can(0.025006609705965473, 0.075, 4961.58700106942, 3.102631823991216)
     load = Load(2589.3299018014327, 0.01647772919452516)
     scene = Scene(can, load, 0.1789453673759448)
-    yield _case(
+    yield _single_run(
         "a swing through 2 rad, to a loose tolerance",
         "two runs were 1.4e-4 rad apart, but 1.1e-3 rad off: steps so large do not show the "
         "method's order",
@@ -269,7 +274,7 @@ def _found() -> Iterator[KnownCase]:
     )
 
     _, top = pendulum().separatrix()
-    yield _case(
+    yield _single_run(
         "pendulum, 1.9e-4 rad inside the separatrix, to a tolerance",
         "rounding grows a millionfold: two runs were by chance 3e-9 rad apart, and 7e-7 rad off",
         "to a tolerance",
@@ -284,7 +289,7 @@ def _found() -> Iterator[KnownCase]:
 
     can = Can(2.232597258875798, 6.697791776627394, 24.64135895693299, 122.82462012912089)
     load = Load(9007.68689806812, 0.9475437058226647, 14361.91170936032)
-    yield _case(
+    yield _single_run(
         "frozen, 6e-10 rad beside the top, in contact",
         "the solver of the contact took what moves the can for nothing, alike at half the timestep",
         "contact, DOP853, 6 ms",
@@ -300,7 +305,7 @@ def _found() -> Iterator[KnownCase]:
         ERROR,
     )
 
-    yield _case(
+    yield _single_run(
         "a can that slips before its only sample",
         "slip has to be counted over all steps, whatever samples are asked for",
         "contact, DOP853, 0.19 ms",
@@ -318,7 +323,7 @@ def _found() -> Iterator[KnownCase]:
 
     scene = Scene(Can(0.033, 0.1, 61.0, 0.0332), Load(0.1, 0.0039, 1.09e-5), 0.0)
     rate = 1298.0
-    yield _case(
+    yield _single_run(
         "four whole turns in a timestep",
         "RK4 sees the same angle at every half of its step, and at half the timestep too; uneven "
         "timesteps do not",
@@ -336,7 +341,7 @@ def _found() -> Iterator[KnownCase]:
 
     can = Can(0.033, 0.099, 0.20528761908358859, 3.284134444100273e-11)
     load = Load(0.1, 0.023717555437268875, 4.4992031467605796e-24)
-    yield _case(
+    yield _single_run(
         "a load without inertia in a can with next to none, to a tolerance",
         "two runs may miss the bottom alike; the energy drifts where a step does, and bounds the "
         "tolerance too",

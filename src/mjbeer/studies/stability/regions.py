@@ -1,8 +1,8 @@
 """Regions of random trials: what one has on a desk, and what nobody has.
 
-What a trial chooses from is data: a number, a `Uniform` or `LogUniform` range, or `OneOf` several
-of these. Each region takes one thing or all things to their extremes, some beyond the domain. A
-trial depends on its number alone.
+A region states as data what its trials choose from: a number, a `Uniform` or `LogUniform` range, or
+`OneOf` several of these. Each region takes one quantity, or all of them, to extremes, some of which
+lie beyond the domain. A trial depends on its number alone.
 """
 
 import math
@@ -22,31 +22,31 @@ from mjbeer.theory.scene import ATTACHMENTS, GRAVITY, Scene, frozen, hoop, pendu
 
 T = TypeVar("T")
 _SWINGS = 400.0
-"""Longest motion that theory can follow, in swings."""
+"""Number of swings of the longest motion that theory can follow."""
 _TURNED = 3e3
 """Largest angle of a motion that theory can follow [rad]."""
 _DAMPED = 0.05
-"""Share of these that a damped motion may have, which theory follows step by step."""
+"""Share of both that a damped motion may have, as theory follows it step by step."""
 _MANY = 200
-"""Largest number of regular samples after the start, so that repeating a run takes few of them."""
+"""Largest number of regular samples in half of the trials; in the others, ten times as many."""
 
 
 class Uniform(NamedTuple):
-    """A number between two others, all of which are equally likely."""
+    """A number between two others, with a uniform distribution."""
 
     low: float
     high: float
 
 
 class LogUniform(NamedTuple):
-    """A number between two positive ones, whose logarithm is uniform."""
+    """A number between two positive ones, whose logarithm has a uniform distribution."""
 
     low: float
     high: float
 
 
 class OneOf:
-    """One of several quantities, all of which are equally likely."""
+    """One of several quantities, each of which is equally likely."""
 
     def __init__(self, *options: "Quantity") -> None:
         self.options = options
@@ -60,11 +60,11 @@ class Minus(NamedTuple):
 
 
 Quantity = float | Uniform | LogUniform | OneOf | Minus
-"""What a number is chosen from; a float is that number."""
+"""What a number is chosen from; a float stands for itself."""
 
 
 def signed(quantity: Quantity) -> OneOf:
-    """Return a quantity to either side of 0."""
+    """Return a quantity with either sign."""
     return OneOf(quantity, Minus(0, quantity))
 
 
@@ -88,7 +88,7 @@ class RandomPicker:
         return float(quantity)
 
     def one(self, *options: T) -> T:
-        """Return one of the options; all are equally likely."""
+        """Return one of the options, each of which is equally likely."""
         if len(options) == 1:
             return options[0]
         return options[int(self._generator.integers(len(options)))]
@@ -96,10 +96,11 @@ class RandomPicker:
 
 @dataclass(frozen=True)
 class Parts:
-    """The parts of a scene, in ratios.
+    """The parts of a scene, as ratios.
 
-    They are those of a mass to that of the load, of an offset to the radius, and of an inertia to
-    m a^2 of its own mass m."""
+    Masses are divided by that of the load, offsets by the radius a, and inertias by m a^2, where m
+    is the mass of the same part.
+    """
 
     radius: Quantity
     """[m]"""
@@ -111,7 +112,7 @@ class Parts:
     """The can's inertia."""
     offset: Quantity
     inertia: Quantity
-    """The load's inertia about its centre of mass."""
+    """The load's inertia, about its centre of mass."""
     incline: Quantity
     """[degrees]"""
     gravity: Quantity = GRAVITY
@@ -161,11 +162,11 @@ _ANYTHING = Parts(
     incline=OneOf(0.0, 1e-8, 10.0, 89.9, Uniform(-30, 30), Uniform(-89.9, 89.9)),
     gravity=OneOf(GRAVITY, GRAVITY, GRAVITY, 0.0, LogUniform(1e-3, 1e3)),
 )
-"""Sizes, masses and gravities over their decades, with special cases about as often as others."""
+"""Sizes, masses and gravities of many decades, with about as many special cases as others."""
 
 
 def _ordinary(pick: RandomPicker) -> Scene:
-    """Return a scene of the paper, on a moderate incline, with a can that one can carry."""
+    """Return a scene of the paper on a moderate incline, with a can that one can carry."""
     incline = math.radians(pick.number(OneOf(0.0, 10.0, Uniform(-20, 20))))
     radius = pick.number(OneOf(0.033, LogUniform(0.01, 0.3)))
     kind = pick.one("beer", "beer", "beer", "pendulum", "hoop")
@@ -207,7 +208,7 @@ def _gravity(pick: RandomPicker) -> Scene:
 
 
 def _liquid(pick: RandomPicker) -> Scene:
-    """Return a can with a real liquid in it."""
+    """Return a scene with a real liquid."""
     make_can = pick.one(Can.massless, Can.sheet_metal)
     can = make_can(pick.number(OneOf(0.033, LogUniform(0.02, 0.1))))
     name = pick.one(*NAMES)
@@ -217,7 +218,7 @@ def _liquid(pick: RandomPicker) -> Scene:
 
 
 def _metal(pick: RandomPicker) -> Scene:
-    """Return a can of sheet metal, as one attaches it to a world."""
+    """Return a scene with a can of sheet metal, as it is attached to a world."""
     can = Can.sheet_metal(pick.number(OneOf(0.033, LogUniform(0.02, 0.1))))
     make = pick.one(sliding, frozen)
     incline = math.radians(pick.number(Uniform(-15, 15)))
@@ -228,8 +229,8 @@ def _metal(pick: RandomPicker) -> Scene:
 def _damped(pick: RandomPicker, scene: Scene) -> Scene:
     """Return a scene with a sliding load and with damping, drag or both, over many decades.
 
-    The unit of damping is M a^2 divided by the time of a fall through the radius, and that of drag
-    is M/a; the torque may grow with several powers of the slip rate.
+    Damping is in units of M a^2 divided by the time of a fall through the radius, and drag in units
+    of M/a. The torque may have terms in several powers of the slip rate.
     """
     radius = scene.can.radius
     mass = scene.effective_mass
@@ -260,7 +261,7 @@ class Start(NamedTuple):
     phi0: Quantity
     """[rad]"""
     rate: Quantity
-    """phi_dot0, times the clock."""
+    """phi_dot0 times the time of `_clock`."""
 
 
 _STARTS = {
@@ -279,11 +280,11 @@ _STARTS = {
     "let go": Start(Uniform(-2.5, 2.5), 0.0),
 }
 _BESIDE_THE_SEPARATRIX = "separatrix"
-"""A start that depends on the scene."""
+"""The name of starts that depend on the scene."""
 
 
 def _start(pick: RandomPicker, scene: Scene, name: str) -> tuple[float, float]:
-    """Return phi0 [rad] and phi_dot0 [rad/s]; a scene without a separatrix is started by hand."""
+    """Return phi0 [rad] and phi_dot0 [rad/s]. A scene without a separatrix starts by hand."""
     if name == _BESIDE_THE_SEPARATRIX:
         try:
             low, high = replace(scene, damping=0.0, drag=0.0).separatrix()
@@ -298,7 +299,7 @@ def _start(pick: RandomPicker, scene: Scene, name: str) -> tuple[float, float]:
 
 
 def _start_beside(pick: RandomPicker, scene: Scene, low: float, high: float) -> tuple[float, float]:
-    """Return a start at rest beside one of two tops, or between them with nearly their energy."""
+    """Return a start at rest near one of two tops, or between them with nearly a top's energy."""
     beside = pick.number(signed(LogUniform(1e-15, 0.1)))
     at_rest = pick.one(True, False)
     if at_rest:
@@ -311,10 +312,10 @@ def _start_beside(pick: RandomPicker, scene: Scene, low: float, high: float) -> 
 
 
 class Pace(NamedTuple):
-    """Timestep and length of a run."""
+    """The timestep and the length of a run."""
 
     unit: str
-    """That of the timestep, as in `_unit`."""
+    """The unit of the timestep, by its name in `_unit`."""
     timestep: Quantity
     steps: Quantity
 
@@ -322,18 +323,13 @@ class Pace(NamedTuple):
 _MANY_STEPS = LogUniform(20, 3000)
 _NEARLY_ONE = OneOf(1.0, Minus(1, signed(LogUniform(1e-12, 0.1))))
 _MULTIPLES = (1, 1, 1, 2, 3)
-_WHOLE_TURNS = OneOf(
-    *(
-        math.pi * part * multiple
-        for part in (0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
-        for multiple in _MULTIPLES
-    )
-)
+_TURNS = math.pi * np.array([0.5, 1.0, 2.0, 4.0, 8.0, 16.0])
+_WHOLE_TURNS = OneOf(*np.outer(_TURNS, _MULTIPLES).ravel().tolist())
 _RESONANT = "resonant"
-"""A whole number of turns, or nearly, in a step or a part of one.
+"""A pace with a whole number of turns, or nearly, in a step or a part of one.
 
-RK4 evaluates forces at half steps, and a run at half the timestep at quarters of them, all of which
-then see the same angle.
+RK4 evaluates forces at half steps, and at half the timestep it does so at quarters. With whole
+turns all of these see the same angle.
 """
 _LONG_STEPS = LogUniform(4e3, 1.5e4)
 _PACES = {
@@ -349,7 +345,7 @@ _PACES = {
 
 
 def _unit(name: str, clock: float, spin: float, frequency: float) -> float:
-    """Return a unit of time [s], from a scene's clock [s], and rates of turn and swing [rad/s]."""
+    """Return a unit of time [s]. `spin` and `frequency` are rates of turns and swings [rad/s]."""
     match name:
         case "clock":
             return clock
@@ -365,7 +361,7 @@ def _unit(name: str, clock: float, spin: float, frequency: float) -> float:
 def _pace(
     pick: RandomPicker, scene: Scene, phi0: float, phi_dot0: float, name: str
 ) -> tuple[float, int]:
-    """Return timestep [s] and number of steps at one of the paces, or as much as theory follows."""
+    """Return timestep [s] and number of steps of a pace, shortened to what theory can follow."""
     pace = _PACES[name]
     spin = abs(phi_dot0)
     frequency = _frequency(scene, phi0, phi_dot0)
@@ -383,23 +379,25 @@ def _longest(scene: Scene, spin: float, frequency: float) -> float:
     """Return the longest time [s] over which theory can follow a motion."""
     oscillator = scene.oscillator
     mean_inertia = oscillator.base + (oscillator.chord + oscillator.coupling) / 2
-    push = max(abs(oscillator.ramp) / mean_inertia, 1e-300)  # angular acceleration [rad/s^2]
+    acceleration = max(abs(oscillator.ramp) / mean_inertia, 1e-300)  # mean angular one [rad/s^2]
     share = 1.0
-    if scene.dissipates:  # the load may turn with the can
+    if scene.dissipates:
         share = _DAMPED
-        push = max(push, scene.gravity * abs(math.sin(scene.incline)) / scene.can.radius)
+        # The load may turn with the can, which accelerates down the incline.
+        of_can = scene.gravity * abs(math.sin(scene.incline)) / scene.can.radius
+        acceleration = max(acceleration, of_can)
     turned = share * _TURNED
-    longest = min(turned / max(spin, 1e-300), math.sqrt(2 * turned / push))
+    longest = min(turned / max(spin, 1e-300), math.sqrt(2 * turned / acceleration))
     if frequency > 0:
         longest = min(longest, share * _SWINGS * 2 * math.pi / frequency)
     return longest
 
 
 def _frequency(scene: Scene, phi0: float, phi_dot0: float) -> float:
-    """Return about the angular frequency of the swing of a start [rad/s].
+    """Return an estimate of the angular frequency of the swing from a start [rad/s].
 
-    Where the can is light and the load has next to no inertia, a small swing about the bottom is
-    faster by many decades than a large one.
+    It depends on the amplitude: if the can is light and the load has hardly any inertia, a small
+    swing about the bottom is faster than a large one by many powers of ten.
     """
     oscillator = scene.oscillator
     depth = oscillator.depth
@@ -413,10 +411,11 @@ def _frequency(scene: Scene, phi0: float, phi_dot0: float) -> float:
 
 
 def _with_setting(pick: RandomPicker, trial: Trial, kind: str) -> Trial:
-    """Return a trial with any setting that its scene allows, in every fourth run a tolerance.
+    """Return a trial with any setting that its scene allows; every fourth has a tolerance.
 
-    A "contact" has next to no friction, or plenty, and no tolerance; "any" may be one that MuJoCo
-    cannot have; "attached" is a can in a world of its own, which steps it accurately.
+    The kind "contact" has hardly any friction, or plenty, and no tolerance. "any" includes ways of
+    rolling that the scene does not support. "attached" is a can in another world, which steps it
+    accurately.
     """
     if kind == "attached":
         return replace(trial, rolling="contact", integrator="RK4", attached=True)
@@ -437,10 +436,11 @@ def _with_setting(pick: RandomPicker, trial: Trial, kind: str) -> Trial:
 
 
 def _with_samples(pick: RandomPicker, trial: Trial, kind: str) -> Trial:
-    """Return a trial with samples of a kind, at whole numbers of timesteps if it has any.
+    """Return a trial with samples of a kind.
 
-    "regular" ones are at every timestep, or every so many, "sparse" are two to six, and "late" is
-    the last alone, or with the one before.
+    "regular" samples are at every timestep, or every so many, "sparse" ones are two to six at
+    random times, and "late" is the last alone or with the one before. MuJoCo's integrators have
+    samples at whole numbers of timesteps only.
     """
     steps = trial.steps
     if kind == "regular":
@@ -458,7 +458,7 @@ def _with_samples(pick: RandomPicker, trial: Trial, kind: str) -> Trial:
 
 
 class Region(NamedTuple):
-    """A part of the search: what its trials choose from; all of each kind are equally likely."""
+    """A part of the search. A trial chooses one of each tuple, all of which are equally likely."""
 
     name: str
     scenes: tuple[Callable[[RandomPicker], Scene], ...] = (_ordinary,)
@@ -526,14 +526,14 @@ REGIONS = (
         damped=True,
     ),
 )
-"""All regions; as many trials are drawn from each."""
+"""All regions, from which equally many trials are drawn."""
 
 
 def random_trial(number: int) -> Trial:
-    """Return the trial of a number from 0 on, in the regions by turns.
+    """Return the trial of a number from 0 on; the regions take turns.
 
-    The regions are wider than the domain: what it refuses counts as refused, and is not drawn
-    again.
+    The regions are wider than the domain. A trial outside it counts as refused, and is not replaced
+    by another.
 
     Raises:
       ParameterError: if the scene, the start or the timestep is outside the domain.

@@ -1,8 +1,8 @@
 """Maps of timestep and stiffness: how runs of stiff models end, measured and by linear theory.
 
-A can with frozen beer on level ground is the stiffer, the harder its constraint, or the stronger
-gravity. Beer that slides in a can of sheet metal is the stiffer, the stronger it is damped. Both
-motions, MuJoCo's and theory's, begin with the same small swing and are judged by the same rule.
+Frozen beer in a can on level ground becomes stiffer with a harder constraint or with stronger
+gravity. Beer that slides in a can of sheet metal becomes stiffer with stronger damping. MuJoCo's
+motion and theory's begin with the same small swing, and are judged by the same rule.
 """
 
 import json
@@ -38,34 +38,33 @@ from mjbeer.theory.can import Can
 from mjbeer.theory.scene import Scene, frozen, sliding
 
 MAPS = "maps"
-"""The group of the study that the maps are in."""
+"""The group of the maps in the study."""
 SHIPPED = pathlib.Path(__file__).with_name("maps.json")
 """The maps that come with mjbeer; `mjbeer stability` wrote them."""
 CELLS = 20
-"""Number of timesteps and of values in a map."""
+"""Number of timesteps in a map, and of values."""
 FEW_CELLS = 8
 """The same in a quick study."""
 _AGREEMENT = 0.05
-"""Largest relative difference at which a measured border agrees with the predicted one."""
+"""Largest relative difference between a measured border and the predicted one."""
 _RESOLUTION = 1.01
-"""Bisection ends when the two timesteps that enclose a border have this ratio."""
+"""Bisection ends when the timesteps on both sides of a border have this ratio."""
 EXPLODED = 0
 INACCURATE = 1
 ACCURATE = 2
 """Outcomes of a run, as digits for the cells of a map."""
 _IMPEDANCE = 0.9
-"""dmin and dmax in the solimp of the constraints: both are MuJoCo's default dmin."""
+"""Impedance of the constraints, dmin and dmax of solimp: MuJoCo's default of dmin."""
 _SWING = 1e-4
 """Angle from which the can is let go [rad]."""
 _VIOLATION = 1e-7
 """Initial violation of the constraint, relative to `_SWING`.
 
-It must be tiny: a stiff constraint corrects it within one time constant, and 1e-4 would already
-disturb the swing by 1 % at tau = 1 ms.
+It must be tiny, as a stiff constraint corrects it within one time constant: at tau = 1 ms, a
+violation of 1e-4 would disturb the swing by 1 %.
 """
 _STEPS = 1000
-"""Least number of steps of a swing: within it, a growth of 2 % a step makes any initial violation
-visible."""
+"""Least number of steps of a run: a violation that grows by 2 % a step is visible at its end."""
 _ALL: tuple[Integrator, ...] = (*MUJOCO_INTEGRATORS, "DOP853")
 PLANS: tuple[tuple[str, Integrator], ...] = (
     *(("solref", name) for name in _ALL),
@@ -73,13 +72,15 @@ PLANS: tuple[tuple[str, Integrator], ...] = (
     *(("gravity", name) for name in _ALL),
     *(("damping", name) for name in _ALL),
 )
-"""All maps: the cause of stiffness, which is an equality whose solref has a time constant
-("solref") or a stiffness ("direct"), "gravity" without a constraint, or the "damping" between can
-and load; and the integrator."""
+"""All maps, each by its family and its integrator.
+
+The family is the cause of stiffness: an equality whose solref has a time constant ("solref") or a
+stiffness ("direct"), "gravity" without a constraint, or "damping" between can and load.
+"""
 SHADES = {"exploded": "#E8A27C", "stable, inaccurate": "#BFDFF2", "stable and accurate": COLOURS[0]}
-"""The outcomes, and their colours, which differ in hue and in brightness."""
+"""The colours of the outcomes, which differ in hue and in brightness."""
 _THEORY: dict[str, Any] = {"color": "black", "linewidth": 1.6}
-"""The look of a border that theory predicts."""
+"""The style of a border that theory predicts."""
 _MEASURED: dict[str, Any] = {
     "linestyle": "none",
     "marker": "o",
@@ -91,7 +92,7 @@ _MEASURED: dict[str, Any] = {
 
 
 class Border(NamedTuple):
-    """The least timestep [s] from which on runs explode, or None where none does."""
+    """The least timestep [s] at which runs explode; None if no run does."""
 
     measured: float | None
     predicted: float | None
@@ -108,7 +109,7 @@ class Border(NamedTuple):
 
 @dataclass(frozen=True)
 class StabilityMap:
-    """How runs of one family with one integrator ended, by timestep and value."""
+    """How the runs of one family and one integrator ended, by timestep and value."""
 
     name: str
     """Family and integrator."""
@@ -117,11 +118,11 @@ class StabilityMap:
     family: str
     integrator: str
     same: float
-    """Share of the cells whose outcome is the predicted one."""
+    """Share of the cells whose outcome was predicted."""
     timesteps: list[float]
     """[s]"""
     values: list[float]
-    """Of the family's quantity."""
+    """The values of the family's quantity."""
     measured: list[str]
     """A string for each value, with a digit for each timestep: the outcome."""
     boundaries: list[Border]
@@ -130,7 +131,7 @@ class StabilityMap:
 
 @dataclass(frozen=True)
 class StoredMaps:
-    """Maps, with the study that they are of."""
+    """Maps, with the study that they belong to."""
 
     command: str
     settings: dict[str, Any]
@@ -146,7 +147,7 @@ class Family(NamedTuple):
     """The least and the largest timestep [s]."""
     values: tuple[float, float]
     label: str
-    """The quantity that the values are of, with its unit."""
+    """The quantity that varies, with its unit."""
     title: str
     caption: str
 
@@ -247,21 +248,22 @@ class Swings:
             bounded = np.abs(states[:, :count]) < GROWTH * self._start[:count]
         if not bounded.all():
             return EXPLODED
-        angle = self._frequency * timestep  # of the swing in a timestep
-        early = states[: max(1, math.floor(math.pi / angle)) + 1] / _SWING
-        # phi is the last coordinate everywhere.
+        phase = self._frequency * timestep  # advance of the swing in a timestep [rad]
+        half_period = max(1, math.floor(math.pi / phase))  # in timesteps
+        simulated = states[: half_period + 1] / _SWING
+        # In the model as in theory, phi is the last of the coordinates.
         phi = len(self._exact.mass) - 1
-        let_go = np.eye(2 * phi + 2)[phi]
-        exact = predictions.motion(self._exact.exact(timestep), let_go, len(early) - 1)
-        phi_error = early[:, count - 1] - exact[:, phi]
-        rate_error = early[:, -1] / self._frequency - exact[:, -1] / angle
+        unit_start = np.eye(2 * phi + 2)[phi]
+        exact = predictions.motion(self._exact.exact(timestep), unit_start, half_period)
+        phi_error = simulated[:, count - 1] - exact[:, phi]
+        rate_error = simulated[:, -1] / self._frequency - exact[:, -1] / phase
         if np.hypot(phi_error, rate_error).max() < ACCURACY:
             return ACCURATE
         return INACCURATE
 
 
 def _soft_row(family: str, value: float) -> SoftRow:
-    """Return the row of theory for a time constant [s] or a direct stiffness [1/s^2]."""
+    """Return the row for theory, of a time constant [s] or a direct stiffness [1/s^2]."""
     if family == "direct":
         return predictions.direct(value, _critical(value), _IMPEDANCE)
     return spring(value, 1.0, _IMPEDANCE)
@@ -270,7 +272,7 @@ def _soft_row(family: str, value: float) -> SoftRow:
 def _model_with_equality(
     scene: Scene, integrator: Integrator, family: str, value: float
 ) -> mujoco.MjModel:
-    """Return a model with an equality of the same row."""
+    """Return MuJoCo's model with an equality that has the same row."""
     spec = specify(scene, "equality", integrator=integrator)
     for constraint in spec.equalities:
         constraint.solref = (-value, -_critical(value)) if family == "direct" else (value, 1.0)
@@ -279,12 +281,12 @@ def _model_with_equality(
 
 
 def _critical(stiffness: float) -> float:
-    """Return the critical damping [1/s] of a direct stiffness [1/s^2]."""
+    """Return the damping [1/s] that is critical for a direct stiffness [1/s^2]."""
     return 2 * math.sqrt(stiffness)
 
 
 def checks(cells: int = CELLS) -> list[Check]:
-    """Return a check a map, of so many timesteps and values."""
+    """Return a check for each map, which has so many timesteps and as many values."""
     reason = "bisection to 1 %, and an instability has to grow before it is seen"
     listed = []
     for family, integrator in PLANS:
@@ -343,7 +345,7 @@ def measure(family: str, integrator: Integrator, cells: int) -> StabilityMap:
 def _first_explosion(
     outcome: Callable[[float], int], timesteps: list[float], outcomes: list[int]
 ) -> float | None:
-    """Return the least timestep [s] that explodes, by bisection beside the first that did."""
+    """Return the least timestep [s] that explodes, by bisection below the first that did."""
     if EXPLODED not in outcomes:
         return None
     place = outcomes.index(EXPLODED)
@@ -361,7 +363,7 @@ def _first_explosion(
 
 
 def table(results: Sequence[Result]) -> Table:
-    """Return a table of how the runs of each map ended, and how well theory knew it."""
+    """Return a table of how the runs of each map ended, and how well theory predicted it."""
     lines = []
     for result in results:
         cells = "".join(result.values["measured"])
@@ -408,13 +410,13 @@ def load(path: pathlib.Path = SHIPPED) -> StoredMaps:
 
 
 def summary(maps: Sequence[StabilityMap]) -> tuple[int, float]:
-    """Return the number of runs in some maps, and the relative error of the worst border."""
+    """Return the number of runs in maps, and the largest relative error of a border."""
     runs = sum(len(row) for one_map in maps for row in one_map.measured)
     return runs, max(one_map.worst for one_map in maps)
 
 
 def figures(stored: StoredMaps) -> dict[str, Callable[[pathlib.Path], None]]:
-    """Return what draws each figure of maps to a path, with .svg appended, by the figure's name."""
+    """Return, by the names of figures, functions that draw them to a path with .svg appended."""
     drawings = {}
     for family in FAMILIES:
         maps = [one_map for one_map in stored.maps if one_map.family == family]
@@ -468,7 +470,7 @@ def _draw_border(
 
 
 def _draw_cells(axes: Axes, one_map: StabilityMap) -> None:
-    """Draw the cells, whose edges are half-way between their values on the logarithmic axes."""
+    """Draw the cells, whose edges lie half-way between the values on logarithmic axes."""
     outcomes = [[int(cell) for cell in row] for row in one_map.measured]
     colours = ListedColormap(list(SHADES.values()))
     axes.pcolormesh(
@@ -486,7 +488,7 @@ def _draw_cells(axes: Axes, one_map: StabilityMap) -> None:
 
 
 def _edges(values: Sequence[float]) -> np.ndarray:
-    """Return the edges around values that are even on a logarithmic axis."""
+    """Return the edges of cells around values that are evenly spaced on a logarithmic axis."""
     logarithms = np.log(values)
     half = (logarithms[1] - logarithms[0]) / 2
     return np.exp(np.append(logarithms - half, logarithms[-1] + half))

@@ -1,6 +1,6 @@
 """The stability study: maps with the borders of linear theory, and a search for silent runs.
 
-The search makes known cases and random ones, and all come before the same judge.
+The search runs known cases and random ones. The same judge decides how each run ended.
 """
 
 import datetime
@@ -43,15 +43,15 @@ from mjbeer.theory.record import ERROR
 
 COMMAND = "mjbeer stability"
 UNFINISHED = "unfinished.jsonl"
-"""File that has the study while it is measured."""
+"""Name of the file of a study that is being measured."""
 FINISHED = "stability.jsonl"
-"""File that has the study when it is whole."""
+"""Name of the file of a study that is complete."""
 KNOWN = "cases"
-"""The group of a study with known cases."""
+"""The group of the known cases in a study."""
 RANDOM = "search"
-"""The group of a study with random runs."""
+"""The group of the random runs in a study."""
 OUTSIDE = "outside the domain"
-"""The kind of random trials that the domain refuses, so that they have no model."""
+"""The kind of the random trials that are refused before they have a model."""
 SIZE = 4 * len(REGIONS)
 """Number of random runs in a batch, which takes some seconds."""
 RUNS = 3000
@@ -59,20 +59,20 @@ RUNS = 3000
 FEW_RUNS = 250
 """The same in a quick study."""
 NEEDLESS = "doubted, yet right"
-"""Counts runs that warn although their samples are right.
+"""The name under which runs are counted that warn although their samples are right.
 
-That is no fault where a can slips or would be pulled.
+It is no fault to warn where the can slips, or where the incline would have to pull it.
 """
 ABOVE = "above its estimate"
-"""Counts trusted runs whose error is above what they admit."""
+"""The name for trusted runs whose error exceeds their own estimate."""
 TWICE = "above twice"
-"""Counts trusted runs whose error is above twice what they admit."""
+"""The name for trusted runs whose error exceeds twice their own estimate."""
 CONFIDENCE = 0.95
-"""That of the bound of the share of silent runs."""
+"""Confidence of the bound on the share of silent runs."""
 FIRST = "first random run"
-"""The setting of a study that has the number of its first random run."""
+"""The key, in the settings of a study, of the number of its first random run."""
 _SEEDS = 10**9
-"""Number of random runs among which a study draws its first; development has seen few."""
+"""A study draws the number of its first random run below this; development has seen few of them."""
 _READ = """
 A run is **right** if it is trusted, and phi and u/a stay within 0.01 rad of theory (relative beyond
 1 rad), and within its tolerance if it has one. It is **refused** if it ends in an error that states
@@ -81,11 +81,11 @@ or wrong. It is **silent** if it is trusted and wrong: there must be none. Two t
 no code judge a motion without damping; damped ones, liquids and attached cans have exact theory
 alone.
 """
-"""How to read the tables of the search."""
+"""Text of the summary on how to read the tables of the search."""
 
 
 def plan(quick: bool, first: int) -> list[Check]:
-    """Return all checks of a study with random runs from the number `first` on.
+    """Return all checks of a study, whose random runs have the numbers from `first` on.
 
     A `quick` study has coarser maps, and fewer random runs.
     """
@@ -105,7 +105,7 @@ def _known_checks() -> list[Check]:
 
 
 def random_checks(runs: int, number: int) -> list[Check]:
-    """Return the checks of at least so many random runs, from a `number` on."""
+    """Return the checks of at least `runs` random runs, whose numbers begin with `number`."""
     checks = []
     for first in range(number, number + runs, SIZE):
         name = f"random runs {first} to {first + SIZE - 1}"
@@ -117,7 +117,7 @@ def random_checks(runs: int, number: int) -> list[Check]:
 
 
 def try_case(case: KnownCase) -> dict[str, Any]:
-    """Return how the variants of a known case ended; "error" counts the wrong ends."""
+    """Return how the variants of a known case ended; "error" counts those that ended wrongly."""
     runs = []
     for variant in case.variants:
         outcome = judge(variant.trial)
@@ -133,9 +133,8 @@ def try_case(case: KnownCase) -> dict[str, Any]:
 def batch(first: int, size: int = SIZE) -> dict[str, Any]:
     """Return how the random runs from the number `first` on ended.
 
-    "error" counts those that are wrong and silent, and "silent" has all that is known of them.
-    "kinds" has the counts by kind of model, with what judged the runs, and counts those `OUTSIDE`
-    the domain as refused.
+    "error" counts the silent runs, and "silent" describes each of them. "kinds" has the counts of
+    verdicts and judges by kind of model; trials `OUTSIDE` the domain count as refused.
     """
     kinds: dict[str, Counter[str]] = {}
     silent = []
@@ -156,7 +155,7 @@ def batch(first: int, size: int = SIZE) -> dict[str, Any]:
 
 
 def _counted(outcome: Outcome) -> list[str]:
-    """Return the names of all that an outcome counts as."""
+    """Return all names under which an outcome is counted."""
     names = []
     if outcome.verdict:
         names.append(outcome.verdict)
@@ -172,13 +171,12 @@ def _counted(outcome: Outcome) -> list[str]:
 
 
 class Totals(NamedTuple):
-    """How often runs ended in which way."""
+    """The counts of runs, by how they ended."""
 
     known: Mapping[str, int]
-    """Of known cases, by verdict."""
+    """The counts of known cases, by verdict."""
     kinds: Mapping[str, Mapping[str, int]]
-    """Of random runs, by kind of model, and of "all": by verdict, by judge, and what else counts.
-    """
+    """The counts of random runs by kind of model, also for "all", by the names of `_counted`."""
 
 
 def totals(results: Iterable[Result]) -> Totals:
@@ -197,10 +195,10 @@ def totals(results: Iterable[Result]) -> Totals:
 
 
 def bound(counts: Mapping[str, int]) -> float | None:
-    """Return an upper bound of the share of trusted runs that are silent, exact for chance.
+    """Return an upper bound on the share of trusted runs that are silent; None without such runs.
 
-    It is that of C. Clopper and E. Pearson at a confidence of `CONFIDENCE`: near 3/n if none of n
-    trusted runs is silent. None if no run was trusted.
+    It is C. Clopper and E. Pearson's exact bound at the confidence `CONFIDENCE`. If none of n
+    trusted runs is silent, it is about 3/n.
     """
     silent = counts.get(UNDETECTED_ERROR, 0)
     trusted = silent + counts.get(RIGHT, 0)
@@ -211,7 +209,7 @@ def bound(counts: Mapping[str, int]) -> float | None:
 
 
 def rounded_up(share: float) -> str:
-    """Return an upper bound with two digits, rounded up: rounded down, it would claim too much."""
+    """Return an upper bound with two digits. Rounded down, it would claim too much."""
     return f"{Context(prec=2, rounding=ROUND_CEILING).create_decimal(share):f}"
 
 
@@ -228,7 +226,7 @@ def search_tables(found: Totals, results: Sequence[Result] = ()) -> list[Table]:
 
 
 def _table_of_kinds(kinds: Mapping[str, Mapping[str, int]]) -> Table:
-    """Return a table with a line a kind of model: how random runs ended, and what judged them."""
+    """Return a table with a row for each kind of model: how runs ended, and who judged them."""
     counted = (*VERDICTS, *JUDGES, NEEDLESS, ABOVE, TWICE)
     last = "silent share of trusted runs at most, at 95 %"
     rows = []
@@ -242,7 +240,7 @@ def _table_of_kinds(kinds: Mapping[str, Mapping[str, int]]) -> Table:
 
 
 def _table_of_silent_runs(results: Sequence[Result]) -> Table:
-    """Return a table with a line a silent run."""
+    """Return a table with a row for each silent run."""
     rows = []
     for result in results:
         for run in result.values.get("silent", ()):
@@ -252,7 +250,7 @@ def _table_of_silent_runs(results: Sequence[Result]) -> Table:
 
 
 def _table_of_cases(results: Sequence[Result]) -> Table:
-    """Return a table with a line a known case: how its runs ended, with the largest errors."""
+    """Return a table with a row for each known case: how its runs ended, and their errors."""
     rows = []
     for result in results:
         cells = [_ended(result.values["runs"], verdict) for verdict in VERDICTS]
@@ -274,15 +272,15 @@ def _ended(runs: Sequence[Mapping[str, Any]], verdict: str) -> str:
 
 
 def run(folder: pathlib.Path, quick: bool, console: Console) -> Study:
-    """Measure what the study in `folder` lacks, on all cores, and return the study.
+    """Measure on all cores what the study in `folder` lacks, and return the study.
 
-    It is kept in the file `UNFINISHED`. Its random runs are fresh: the number of the first one is
-    drawn when the study begins, and kept in its settings.
+    Meanwhile it is in the file `UNFINISHED`. Its random runs are fresh: the number of the first one
+    is drawn when the study begins, and is one of its settings.
 
     Raises:
       OutputError: if the folder cannot be written to.
       OSError: if the system ends one of the processes.
-      ParameterError: if one of the files of the study is there but is not such a study.
+      ParameterError: if a file of that name exists but has no such study.
     """
     settings = {"quick": quick, FIRST: secrets.randbelow(_SEEDS)}
     for name in (UNFINISHED, FINISHED):
@@ -298,7 +296,7 @@ def run(folder: pathlib.Path, quick: bool, console: Console) -> Study:
 
 
 def tables(study: Study) -> list[Table]:
-    """Return the tables for the terminal; that with a line a case appears only in the summary."""
+    """Return the tables for the terminal. The table of known cases is in the summary alone."""
     maps = stability_maps.table(study.of(stability_maps.MAPS))
     return [maps, *search_tables(totals(study.results), study.results)]
 

@@ -37,13 +37,13 @@ from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.scene import Scene
 
 MOST_STEPS = 400_000
-"""Largest number of steps of a motion, which take some two seconds. A swing takes about twenty."""
+"""Largest number of steps of a motion: they take about two seconds. A swing takes about twenty."""
 _ORDER = 28
 """Order of the series. Between 24 and 32 the run time for a given error is the same within 10 %."""
 _TAIL = 1e-18
 """Size of the last terms of a step relative to the rate: 1 % of the rounding of a double."""
 _LAST = 3
-"""Number of last terms that must be small: one or two may be small by chance."""
+"""Number of last terms that must be small, as one or two may be small by chance."""
 
 
 class Law(NamedTuple):

@@ -1,4 +1,4 @@
-"""Checks of motions against exact theory, damped ones too, and of the integrators' orders."""
+"""Checks of motions, also damped ones, against exact theory, and of the integrators' orders."""
 
 import math
 from collections.abc import Iterator
@@ -18,18 +18,18 @@ from mjbeer.theory.scene import Scene, frozen, pendulum, sliding
 from mjbeer.theory.trajectory import Trajectory, exact_motion
 
 _FRICTION = 10.0
-"""Friction coefficient of the runs with contact. Rolling without slipping needs 1.2 at most in any
-of them."""
+"""Friction coefficient of the runs with contact, none of which needs more than 1.2 to roll without
+slipping."""
 _METAL = Can.sheet_metal()
 """The 12-oz aluminium can of the paper's section 3."""
 
 
 class Order(NamedTuple):
-    """Order of an integrator."""
+    """The order of an integrator, as its check expects it."""
 
     expected: int
     margin: float
-    """Largest difference of the observed order from it."""
+    """Largest difference of the observed order from the expected one."""
 
 
 ORDERS: dict[Integrator, Order] = {"RK4": Order(4, 0.2), "DOP853": Order(8, 0.5)}
@@ -37,14 +37,14 @@ ORDERS |= {name: Order(1, 0.1) for name in MUJOCO_INTEGRATORS if name != "RK4"}
 
 
 def checks() -> Iterator[Check]:
-    """Yield the checks of motions near an equilibrium or about a second long."""
-    yield from _oscillations()
-    yield from _rests()
-    yield from _trajectories()
-    yield from _tolerances()
+    """Yield the checks of motions without damping: periods, rests, and trajectories."""
+    yield from _period_checks()
+    yield from _rest_checks()
+    yield from _timestep_checks()
+    yield from _tolerance_checks()
 
 
-def _rests() -> Iterator[Check]:
+def _rest_checks() -> Iterator[Check]:
     """Yield the checks of cans that lie at rest."""
     torques = "rounding of the torques, over 5 s of rest"
     settles = "the can settles on its soft contact, rocks and creeps"
@@ -61,7 +61,7 @@ def _rests() -> Iterator[Check]:
             yield Check("rest", quantity, partial(_creep, scene, rolling), by, bound, "rad", reason)
 
 
-def _trajectories() -> Iterator[Check]:
+def _timestep_checks() -> Iterator[Check]:
     """Yield the checks of motions with a fixed timestep."""
     scenes = (
         ("sliding", sliding()),
@@ -95,7 +95,7 @@ class _Start(NamedTuple):
     """[rad/s]"""
 
 
-def _tolerances() -> Iterator[Check]:
+def _tolerance_checks() -> Iterator[Check]:
     """Yield the checks of motions to a tolerance."""
     for start in (
         _Start("sliding", sliding(), 1.0),
@@ -122,14 +122,14 @@ class _Swing(NamedTuple):
     reason: str
 
 
-def _oscillations() -> Iterator[Check]:
+def _period_checks() -> Iterator[Check]:
     """Yield the checks of periods."""
-    own = "RK4's own error, (omega h)^4/120 = 1.26e-9 for a small swing"
+    rk4 = "RK4's own error, (omega h)^4/120 = 1.26e-9 for a small swing"
     wide = "RK4's own error, larger beside the separatrix"
     finer = "as above, 1/256 of it"
     for swing in (
-        _Swing(0.1, "RK4", 1e-3, 1.3e-9, own),
-        _Swing(1.0, "RK4", 1e-3, 1e-9, own),
+        _Swing(0.1, "RK4", 1e-3, 1.3e-9, rk4),
+        _Swing(1.0, "RK4", 1e-3, 1e-9, rk4),
         _Swing(3.0, "RK4", 1e-3, 2e-7, wide),
         _Swing(0.1, "RK4", 2.5e-4, 1e-9, finer),
         _Swing(3.0, "RK4", 2.5e-4, 1e-9, finer),
@@ -145,30 +145,41 @@ def _oscillations() -> Iterator[Check]:
         yield Check("oscillations", quantity, measure, by, swing.bound, "relative", swing.reason)
 
 
-def damped() -> Iterator[Check]:
+class _SteadyRolling(NamedTuple):
+    """A damped scene that comes to roll at its terminal speed."""
+
+    name: str
+    can: Can
+    rolling: Rolling
+    bound: float
+    """Largest relative error of the terminal speed."""
+    reason: str
+
+
+def damped_checks() -> Iterator[Check]:
     """Yield the checks of damped scenes: steady rolling, and trajectories."""
     fixed = "rounding, at a fixed point of RK4"
-    settings: tuple[tuple[str, Can, Rolling, float, str], ...] = (
-        ("massless can", Can(), "reduced", 1e-12, fixed),
-        ("metal can", _METAL, "reduced", 1e-12, fixed),
-        ("metal can", _METAL, "equality", 1e-11, "rounding of the constraint's force"),
-    )
-    for name, can, rolling, bound, reason in settings:
-        scene = sliding(can=can, damping=2e-3)
-        by = f"sliding, {name}, 2e-3 N m s, {rolling}, RK4, 1 ms"
+    constraint = "rounding of the constraint's force"
+    for steady in (
+        _SteadyRolling("massless can", Can(), "reduced", 1e-12, fixed),
+        _SteadyRolling("metal can", _METAL, "reduced", 1e-12, fixed),
+        _SteadyRolling("metal can", _METAL, "equality", 1e-11, constraint),
+    ):
+        scene = sliding(can=steady.can, damping=2e-3)
+        by = f"sliding, {steady.name}, 2e-3 N m s, {steady.rolling}, RK4, 1 ms"
         yield Check(
             "damped",
             "terminal speed, 15 s after a start at rest",
-            partial(_terminal_speed_error, scene, rolling),
+            partial(_terminal_speed_error, scene, steady.rolling),
             by,
-            bound,
+            steady.bound,
             "relative",
-            reason,
+            steady.reason,
         )
         yield Check(
             "damped",
             "terminal tilt, eq. (53), 15 s after a start at rest",
-            partial(_terminal_tilt_error, scene, rolling),
+            partial(_terminal_tilt_error, scene, steady.rolling),
             by,
             1e-12,
             "rad",
@@ -185,7 +196,7 @@ def damped() -> Iterator[Check]:
         yield Check("damped", quantity, measure, by, 1e-10, "rad", "the tolerance")
 
 
-def orders() -> Iterator[Check]:
+def order_checks() -> Iterator[Check]:
     """Yield the checks of the integrators' orders."""
     for integrator, order in ORDERS.items():
         measure = partial(_order_error, frozen(), integrator)
@@ -222,17 +233,14 @@ def phi_error(run: Trajectory, relative: bool = False) -> float:
 def _error(
     scene: Scene, duration: float, phi0: float, phi_dot0: float = 0.0, **setting: Any
 ) -> float:
-    """Return the largest error of phi [rad], for a tolerance relative beyond 1 rad.
-
-    In theory no contact is lost.
-    """
+    """Return the largest error of phi [rad]; with a tolerance, it is relative beyond 1 rad."""
     run = simulate(scene, duration, phi0, phi_dot0, **setting)
     return phi_error(run, relative="tolerance" in setting)
 
 
 @cache
 def _steady(scene: Scene, rolling: Rolling) -> Run:
-    """Return a run that ends after fifty times of the slowest decay."""
+    """Return a run that lasts fifty times as long as the slowest decay."""
     return simulate(scene, 15, 0.0, rolling=rolling)
 
 
@@ -249,9 +257,9 @@ def _terminal_tilt_error(scene: Scene, rolling: Rolling) -> float:
 def _order_error(scene: Scene, integrator: Integrator) -> float:
     """Return the observed order of an integrator on a swing of 0.3 rad, less the expected one.
 
-    It is that over six halvings. At order 8 the error falls by 14 digits over six halvings, more
-    than a double has. For DOP853 each halving is therefore two rungs, and only rungs with an error
-    between 1e-3 rad and 1e-13 rad are fitted.
+    The timestep is halved six times. At order 8 the error would fall by 14 digits, to below
+    rounding. For DOP853 each halving therefore takes two steps, and only errors between 1e-3
+    and 1e-13 rad are fitted.
     """
     duration = 2.0
     least = 0.0

@@ -18,18 +18,21 @@ from mjbeer.model.setting import MujocoIntegrator
 from mjbeer.theory.standing import SERIES, Reaction, Standing, standing
 
 SHARES = (0.2, 0.4, 0.6, 0.8, 1.2, 1.4, 2.0, 4.0)
-"""Frequencies of shaking, over that of the first mode; the next ones have 1.7, 2.2, 2.5 and 2.9."""
+"""Frequencies of shaking, divided by that of the first mode.
+
+The next four modes have 1.7, 2.2, 2.5 and 2.9 times the frequency of the first.
+"""
 _ANGLE = 1e-3
 """Tilt of the pendulums that are let go [rad]."""
 _ROUNDED = 1.05
-"""Factor on the errors that theory gives, as their bound: two digits of it are shown."""
+"""Factor from an error that theory predicts to its bound, of which two digits are shown."""
 _THROWN = 100
 """Number of cans that are thrown."""
 FORCE = 0
 MOMENT = 2
-"""Places of force and moment among the reactions."""
+"""Indices of force and moment among the reactions."""
 _GAIN = 0.1
-"""Largest share of its energy that a thrown can may gain: a rigid can gains 0.05 at 5 ms."""
+"""Share of its energy that a thrown can may gain at most: a rigid can gains 0.05 at 5 ms."""
 
 
 def checks() -> Iterator[Check]:
@@ -55,7 +58,7 @@ def checks() -> Iterator[Check]:
         "between samples",
     )
     for modes in (1, 2, 3, 5):
-        yield from _reactions(modes)
+        yield from _reaction_checks(modes)
     for timestep in (2e-3, 5e-3):
         for modes in (1, 3):
             name = f"thrown cans, of {_THROWN}, that diverge or gain {_GAIN:g} of their energy"
@@ -69,8 +72,8 @@ def _in_words(modes: int) -> str:
     return "1 mode" if modes == 1 else f"{modes} modes"
 
 
-def _reactions(modes: int) -> Iterator[Check]:
-    """Yield the checks of what a can does to the hand that shakes it."""
+def _reaction_checks(modes: int) -> Iterator[Check]:
+    """Yield the checks of force and moment on the hand that shakes a can."""
     can = water(modes)
     for place, quantity in ((FORCE, "force under shaking"), (MOMENT, "moment under pitching")):
         yield Check(
@@ -78,14 +81,14 @@ def _reactions(modes: int) -> Iterator[Check]:
             f"{quantity} at 8 frequencies, 0.2 to 4 of the first, against the infinite series",
             partial(_largest_reaction_error, can, place),
             f"half full, {_in_words(modes)}",
-            float(_ROUNDED * np.abs(left_out(can)[place]).max()),
+            float(_ROUNDED * np.abs(predicted_reaction_errors(can)[place]).max()),
             "relative",
             "the modes left out, whose share the bound is",
         )
 
 
 def _largest_reaction_error(can: Standing, place: int) -> float:
-    """Return the largest relative error of force or moment."""
+    """Return the largest relative error of the force or the moment, by its index."""
     return float(np.abs(reaction_errors(can)[place]).max())
 
 
@@ -105,23 +108,24 @@ def water(modes: int = 1, fill: float = 0.5, damping_ratio: float | None = None)
 
 
 class LetGo(NamedTuple):
-    """Relative errors of the first mode, let go in a can that is held."""
+    """Relative errors of the first mode of a can that is held while its liquid is let go."""
 
     frequency: float
     decrement: float
-    """The decrement itself, where there is no damping."""
+    """Without damping, the decrement itself."""
 
 
 @cache
 def let_go(can: Standing) -> LetGo:
-    """Return the errors of frequency and decrement, from the zeros of the angle."""
+    """Return the errors of frequency and decrement, measured at the zeros of the angle."""
     omega = can.frequencies()[0]
     ratio = can.damping_ratios()[0]
     angle = _first_mode(can, duration=64 / omega)
     crossings = angle.roots(extrapolate=False)
     cycles = (len(crossings) - 1) / 2
     root = math.sqrt(1 - ratio**2)
-    measured = 2 * math.pi * cycles / (crossings[-1] - crossings[0]) / (omega * root)
+    damped_omega = 2 * math.pi * cycles / (crossings[-1] - crossings[0])
+    measured = damped_omega / (omega * root)
     frequency = measured / (1 - _ANGLE**2 / 16) - 1
     speeds = np.abs(angle(crossings, 1))
     decrement = math.log(speeds[0] / speeds[-1]) / cycles
@@ -130,7 +134,7 @@ def let_go(can: Standing) -> LetGo:
 
 
 def _first_mode(can: Standing, duration: float) -> CubicHermiteSpline:
-    """Return the angle of the first pendulum [rad] over some time [s], let go in a held can."""
+    """Return the angle [rad] of the first pendulum, let go in a held can, over a duration [s]."""
     model = build(can, free=False)
     data = mujoco.MjData(model)
     slosh = data.joint("slosh1")
@@ -148,9 +152,11 @@ def _first_mode(can: Standing, duration: float) -> CubicHermiteSpline:
 
 
 def response(can: Standing, omega: float) -> Reaction:
-    """Return the reaction of MuJoCo's model without its shell at a frequency [rad/s].
+    """Return the liquid's reaction to shaking at a frequency [rad/s], in MuJoCo's model.
 
-    It follows from the model's inertia and its stiffness at rest.
+    It follows from the inertia M and the stiffness K of the model at rest: forces are
+    (K - omega^2 M) times displacements. The pendulums are free of force, which gives their
+    displacements for those of the rig.
     """
     model = _on_a_rig(can)
     data = mujoco.MjData(model)
@@ -161,16 +167,18 @@ def response(can: Standing, omega: float) -> Reaction:
     for mode in range(1, can.modes + 1):
         moving.append(model.joint(f"can-slosh{mode}").dofadr[0] + 1)
     stiffness = _stiffness(model, data, moving)
-    # The rig and the shell are rigid: a mass, and a moment about the liquid's middle.
+    # Rig and shell are rigid. The rig's mass and moment are 1; the shell's centre of mass lies
+    # above the liquid's middle, about which moments are taken.
     shell = can.can
     above = (shell.length - can.height) / 2
-    across = transverse_inertia(shell) + shell.mass * above**2
-    rigid = [[1 + shell.mass, shell.mass * above], [shell.mass * above, 1 + across]]
-    inertia[:2, :2] -= rigid
+    shell_inertia = transverse_inertia(shell) + shell.mass * above**2
+    coupling = shell.mass * above
+    inertia[:2, :2] -= [[1 + shell.mass, coupling], [coupling, 1 + shell_inertia]]
     stiffness[1, 1] += shell.mass * can.gravity * above
-    dynamic = (stiffness - omega**2 * inertia)[np.ix_(moving, moving)] / -(omega**2)
-    followed = np.linalg.solve(dynamic[2:, 2:], dynamic[2:, :2])
-    reaction = dynamic[:2, :2] - dynamic[:2, 2:] @ followed
+    # The first two coordinates are the rig's. Forces are divided by accelerations.
+    apparent_mass = (stiffness - omega**2 * inertia)[np.ix_(moving, moving)] / -(omega**2)
+    pendulums = np.linalg.solve(apparent_mass[2:, 2:], apparent_mass[2:, :2])
+    reaction = apparent_mass[:2, :2] - apparent_mass[:2, 2:] @ pendulums
     return Reaction(reaction[0, 0], reaction[0, 1], reaction[1, 1])
 
 
@@ -186,7 +194,7 @@ def _on_a_rig(can: Standing) -> mujoco.MjModel:
 
 
 def _stiffness(model: mujoco.MjModel, data: mujoco.MjData, moving: Sequence[int]) -> np.ndarray:
-    """Return the stiffness matrix at rest, of which the columns `moving` are filled."""
+    """Return the stiffness matrix at rest, of which only the columns `moving` are computed."""
     angle = 1e-4
     stiffness = np.zeros((model.nv, model.nv))
     for place in moving:
@@ -209,10 +217,10 @@ def reaction_errors(can: Standing) -> np.ndarray:
 
 
 @cache
-def left_out(can: Standing) -> np.ndarray:
-    """Return what theory says of those errors.
+def predicted_reaction_errors(can: Standing) -> np.ndarray:
+    """Return the `reaction_errors` that theory predicts, shape (3, shares).
 
-    The modes left out stay at their pivots instead of moving.
+    The model leaves modes out: their masses stay at their pivots instead of moving.
     """
     shaken = np.array(SHARES)[:, None] * can.frequencies(1)[0]
     omega = can.frequencies(SERIES)[can.modes :]
@@ -236,9 +244,9 @@ def thrown(
     integrator: MujocoIntegrator = "implicitfast",
     count: int = _THROWN,
 ) -> int:
-    """Return how many cans diverge or gain energy, thrown for a second.
+    """Return how many of `count` cans diverge or gain energy in the second after they are thrown.
 
-    They are thrown from 0.3 m with some 1 m/s and 5 rad/s.
+    They are thrown at a height of 0.3 m with about 1 m/s and 5 rad/s.
     """
     model = build(can, integrator=integrator, timestep=timestep)
     model.opt.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)

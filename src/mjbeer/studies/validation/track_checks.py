@@ -1,4 +1,4 @@
-"""Checks of the fit to a track: what it finds in exact motions, with and without noise."""
+"""Checks of fits to tracks of exact motions, with and without noise."""
 
 import math
 from collections.abc import Iterator
@@ -29,7 +29,7 @@ class FilmedScene(NamedTuple):
     phi0: float | None
     """[rad]; None for a level surface."""
     sought: str
-    """What is sought besides the incline."""
+    """The parameter that is fitted besides the incline."""
 
 
 SCENES = {
@@ -57,7 +57,7 @@ def checks() -> Iterator[Check]:
         yield Check(
             "tracks",
             "incline of a track",
-            partial(_lost, filmed_scene),
+            partial(_incline_error, filmed_scene),
             f"{name}, 60 points without noise",
             1e-6,
             "rad",
@@ -67,7 +67,7 @@ def checks() -> Iterator[Check]:
             yield Check(
                 "tracks",
                 "squares of errors over standard errors, less 1",
-                partial(_excess, filmed_scene),
+                partial(_excess_of_squares, filmed_scene),
                 f"{name}, {_TRACKS} tracks, 3 mm of noise",
                 3 * math.sqrt(1 / _TRACKS),
                 "",
@@ -78,7 +78,7 @@ def checks() -> Iterator[Check]:
 def filmed(scene: Scene, phi0: float | None, rng: np.random.Generator | None = None) -> Track:
     """Return the track of a can that lies still for 0.3 s and is then let go.
 
-    `rng` makes noise, and a lens's bend.
+    With `rng` the track has noise, and the bend of a lens.
     """
     time = np.arange(60) / _RATE
     rolls = time > 0.3
@@ -94,7 +94,7 @@ def filmed(scene: Scene, phi0: float | None, rng: np.random.Generator | None = N
 
 
 def fitted(track: Track, filmed_scene: FilmedScene, bend: float | None = None) -> Fit:
-    """Return the fit that begins from half a degree more."""
+    """Return the fit to a track; its guess of the incline is half a degree too large."""
     scene = filmed_scene.scene
     guess = with_parameters(scene, {"incline": scene.incline + math.radians(0.5)})
     sought = ("incline", filmed_scene.sought)
@@ -102,18 +102,18 @@ def fitted(track: Track, filmed_scene: FilmedScene, bend: float | None = None) -
     return fit(track, guess, sought, None, start, bend, progress=False)
 
 
-def _lost(filmed_scene: FilmedScene) -> float:
+def _incline_error(filmed_scene: FilmedScene) -> float:
     """Return the error of the incline [rad] without noise."""
     track = filmed(filmed_scene.scene, filmed_scene.phi0)
     found = fitted(track, filmed_scene, bend=0.0)
     return found.values["incline"] - filmed_scene.scene.incline
 
 
-def _excess(filmed_scene: FilmedScene) -> float:
-    """Return by how much the mean square of errors exceeds that of the standard errors."""
+def _excess_of_squares(filmed_scene: FilmedScene) -> float:
+    """Return the mean square of the errors, in units of the standard errors, less 1."""
     scene = filmed_scene.scene
     names = ("incline", filmed_scene.sought)
-    truth = {"incline": scene.incline, "damping": 1.0}
+    truth = {"incline": scene.incline, "damping": 1.0}  # damping is a factor on the scene's law
     squares = []
     for seed in range(_TRACKS):
         track = filmed(scene, filmed_scene.phi0, np.random.default_rng(seed))

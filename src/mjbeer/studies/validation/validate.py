@@ -1,4 +1,4 @@
-"""validate(): measure every check and every claim of the paper; the tables of both."""
+"""The validation: every check and every claim of the paper is measured, and tabulated."""
 
 from dataclasses import dataclass
 
@@ -69,8 +69,8 @@ def checks() -> list[Check]:
     """Return all checks of the validation, in the order of its table."""
     return [
         *motion_checks.checks(),
-        *motion_checks.damped(),
-        *motion_checks.orders(),
+        *motion_checks.damped_checks(),
+        *motion_checks.order_checks(),
         *standing_checks.checks(),
         *track_checks.checks(),
     ]
@@ -97,7 +97,10 @@ def audit(results: list[Result]) -> Table:
     lines = []
     for result in results:
         printed = result.values.get("printed")
-        errors = (_error(result), "") if printed is None else (f"{printed:.2g}", _error(result))
+        # Only a misprint has two errors: as printed, and as it should be.
+        errors = (_error(result), "")
+        if printed is not None:
+            errors = (f"{printed:.2g}", _error(result))
         bound = f"{result.bound:.1e}" + FAILED[result.passed]
         verdict = result.values["verdict"]
         heading = (result.group, result.name, verdict, result.by)
