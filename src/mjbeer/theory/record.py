@@ -97,8 +97,10 @@ class Record:
         """Return the error of phi [rad], relative beyond 1 rad, that the swing's energy implies.
 
         An energy that is off by a share of itself makes phi_dot, and the angle covered meanwhile,
-        off by about that share. Errors of opposite sign cancel. Hence the error of phi is about
-        `swing_drift` divided by the energy. With damping or drag there is none.
+        off by half that share in a rotation or a small swing, and by up to twice the share in a
+        swing that nearly reaches the crest. The share itself stands for all of them. Errors of
+        opposite sign cancel. Hence `swing_drift` is divided by the energy. With damping or drag
+        there is none.
         """
         return self.swing_drift / self._swing_scale / max(1.0, self.largest_turn)
 
