@@ -50,7 +50,7 @@ class SundmanTime(NamedTuple):
     varying: float
     multiple: float  # 1 for a coupling, 1/2 for a chord
     law: PendulumLaw  # that phi nearly obeys
-    arm: float  # the slide less arm sin(phi) is evenly accelerated [m]
+    arm: float  # of the steady slide, as in `SwingLaw` [m]
     points: np.ndarray  # of Gauss's formula in a step, between 0 and 1
     weights: np.ndarray  # of these points, whose sum is 1
     position_weights: np.ndarray  # of the accelerations, for phi at these points
