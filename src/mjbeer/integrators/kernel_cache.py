@@ -22,21 +22,26 @@ SOURCES = tuple(
     for folder in ("theory", "model", "integrators", "simulation")
     for path in sorted((_PACKAGE / folder).rglob("*.py"))
 )
-"""The files from which kernels may take functions and constants: those of the folders that have
-kernels, and below."""
+"""The files from which kernels may take functions and constants.
+
+These rooms have kernels, or are imported by rooms that do. A change in any other room leaves the
+compiled code as it is. A test finds all files that kernels are made from, and looks for them here.
+"""
 _PREFIX = "mjbeer-"
 _UNUSED = 24 * 3600.0
-"""Time after which the folder of other sources is removed [s]. A process that has begun earlier,
-with those sources, may still compile: only if it writes at the very moment of the removal, its call
-ends in an error."""
+"""Time without use after which the folder of other sources is removed [s].
+
+A process that began earlier, with those sources, may still compile. Its call ends in an error only
+if it writes at the very moment of the removal.
+"""
 _lock = threading.Lock()
 
 
 def compile_and_keep(function: Callable[..., Any], **options: Any) -> Any:
     """Return the kernel of a function: numba compiles it when it is called, or loads it.
 
-    `options` are those of `njit`. The folder is numba's setting while the kernel is made, and the
-    user's own functions are kept where the user wants them.
+    `options` are those of `njit`. The folder is numba's setting only while the kernel is made, so
+    that the user's own functions are kept where the user wants them.
     """
     with _lock:
         before = config.CACHE_DIR
@@ -48,9 +53,9 @@ def compile_and_keep(function: Callable[..., Any], **options: Any) -> Any:
 
 
 def _folder() -> pathlib.Path:
-    """Return the folder for these sources, in numba's own folder: that can be written to.
+    """Return the folder for these sources, within the folder of numba, which can be written to.
 
-    Each user has a folder of their own, as they may not be able to write into another's.
+    Each user has a folder of their own, as one user may not write into the folder of another.
     """
     content = hashlib.sha256(str(os.getuid() if hasattr(os, "getuid") else "").encode())
     for path in SOURCES:
@@ -59,15 +64,20 @@ def _folder() -> pathlib.Path:
 
 
 def _numba_folder() -> pathlib.Path:
-    """Return the folder in which numba would keep the code of this file.
+    """Return the folder in which numba would keep compiled code of this file.
 
-    It tells this of functions that it compiles only, and so this one is marked to be compiled.
+    It is in NUMBA_CACHE_DIR if the user has set that, otherwise beside this file, or in the user's
+    cache if nothing can be written there. numba says where only for a function that is marked for
+    compiling and keeping. So this function marks itself; it is never compiled.
     """
     return pathlib.Path(njit(_numba_folder, cache=True).stats.cache_path)
 
 
 def _tidy() -> None:
-    """Make the folder, mark it as used today, and remove those of other sources, long unused."""
+    """Make the folder, mark it as used now, and remove the unused folders of other sources.
+
+    Every process that imports this file does so, as those that load code use the folder as well.
+    """
     FOLDER.mkdir(parents=True, exist_ok=True)
     os.utime(FOLDER)
     for other in FOLDER.parent.glob(f"{_PREFIX}*"):

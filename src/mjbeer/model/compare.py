@@ -32,9 +32,9 @@ def model_fault(
     if joints != expected_joints:
         return f"gives the joints {', '.join(joints)}, not {', '.join(expected_joints)}"
     probes = _probes(scene) if motion is None else _rolling_states(scene, motion)
-    equations = _evaluate(model, scene, setting.rolling, probes)
-    if isinstance(equations, str):
-        return equations
+    equations = _evaluate(model, setting.rolling, probes)
+    if equations.constraint_fault is not None:
+        return equations.constraint_fault
     found = _phi_ddot(model, scene, equations)
     _, expected = accelerations(scene, probes.phi, probes.phi_dot, probes.u_dot)
     size = np.abs(expected).max() + _typical_rate(scene) ** 2
@@ -93,20 +93,18 @@ def _rolling_states(scene: Scene, motion: Coordinates) -> Coordinates:
 class _Equations(NamedTuple):
     """The equations of motion of a model, inertias x accelerations = torques, at some states."""
 
-    states: np.ndarray
-    """Shape (states, nq + nv)."""
     inertias: np.ndarray
     """Mass matrices, shape (states, nv, nv)."""
     torques: np.ndarray
     """Forces of joints without those of constraints, shape (states, nv)."""
     warned: bool
     """Whether MuJoCo warned of a state."""
+    constraint_fault: str | None
+    """Which constraint acts besides that of rolling, at the first state where one does."""
 
 
-def _evaluate(
-    model: mujoco.MjModel, scene: Scene, rolling: Rolling, probes: Coordinates
-) -> _Equations | str:
-    """Return a model's equations of motion at states of rolling, or which constraint is wrong."""
+def _evaluate(model: mujoco.MjModel, rolling: Rolling, probes: Coordinates) -> _Equations:
+    """Return a model's equations of motion at states of rolling."""
     model = copy.copy(model)
     # The accelerations of "discrete" are means over a step.
     model.opt.integrator = mujoco.mjtIntegrator.mjINT_RK4
@@ -114,20 +112,21 @@ def _evaluate(
     states = to_states(model, probes)
     inertias = np.empty((len(states), model.nv, model.nv))
     torques = np.empty((len(states), model.nv))
+    constraint_fault = None
     with quiet():
         for state, inertia, torque in zip(states, inertias, torques, strict=True):
             data.qpos[:] = state[: model.nq]
             data.qvel[:] = state[model.nq :]
             mujoco.mj_forward(model, data)
-            fault = _check_constraints(model, data, rolling)
-            if fault is not None:
-                return fault
+            if constraint_fault is None:
+                constraint_fault = _constraint_fault(model, data, rolling)
             mujoco.mj_fullM(model, data, inertia)
             torque[:] = data.qfrc_smooth
-    return _Equations(states, inertias, torques, bool(np.any(data.warning.number)))
+    warned = bool(np.any(data.warning.number))
+    return _Equations(inertias, torques, warned, constraint_fault)
 
 
-def _check_constraints(model: mujoco.MjModel, data: mujoco.MjData, rolling: Rolling) -> str | None:
+def _constraint_fault(model: mujoco.MjModel, data: mujoco.MjData, rolling: Rolling) -> str | None:
     """Return which constraint is active besides that of rolling, None if there is none."""
     others = data.nf + data.nl
     expected_equalities = int(rolling == "equality")
@@ -161,9 +160,19 @@ def _phi_ddot(model: mujoco.MjModel, scene: Scene, equations: _Equations) -> np.
     inertias = rates @ equations.inertias @ rates.T
     torques = equations.torques @ rates.T
     accelerations_of_joints = np.linalg.solve(inertias, torques[..., None])[..., 0] @ rates
-    velocities = equations.states[:, model.nq :]
-    slopes = np.concatenate([velocities, accelerations_of_joints], axis=1)
-    return to_coordinates(model, scene, slopes, np.zeros(len(slopes))).phi_dot
+    return _phi_rate(model, scene, accelerations_of_joints)
+
+
+def _phi_rate(model: mujoco.MjModel, scene: Scene, joint_rates: np.ndarray) -> np.ndarray:
+    """Return the rate of phi that follows from the rates of all joints, shape (states,).
+
+    phi is a sum of angles of joints. So phi_ddot follows from the joints' accelerations just as
+    phi_dot does from their velocities. `to_coordinates` knows that sum, but takes whole states:
+    here it gets made-up ones, with these rates at position 0 and time 0.
+    """
+    count = len(joint_rates)
+    made_up_states = np.concatenate([np.zeros((count, model.nq)), joint_rates], axis=1)
+    return to_coordinates(model, scene, made_up_states, np.zeros(count)).phi_dot
 
 
 def _rounding(scene: Scene, rolling: Rolling, probes: Coordinates, size: float) -> np.ndarray:

@@ -21,12 +21,15 @@ for _formula in (
     formulas.inertia,
     formulas.swing_energy,
     formulas.potential_drop,
+    formulas.swing_energy_change,
     formulas.phi_acceleration,
     formulas.sideways_pull,
     formulas.axis_acceleration,
     formulas.normal_force,
     formulas.friction_of_frozen,
     formulas.friction_of_sliding,
+    formulas.rolling_margin,
+    formulas.zero_crossing,
     formulas.kinetic_energy,
     formulas.potential_energy,
 ):
@@ -125,13 +128,11 @@ def _add_forces(numbers, friction, time, phi, phi_dot, passed, extremes):
     extremes.lowest_normal = min(extremes.lowest_normal, normal)
     if pull > extremes.needed_friction * normal:
         extremes.needed_friction = pull / normal if normal > 0 else np.inf
-    margin = normal
-    if friction < np.inf:
-        margin = min(normal, friction * normal - pull)
+    margin = formulas.rolling_margin(normal, pull, friction)
     if margin < 0 and extremes.rolling_ends_at == np.inf:
-        # The line between the last two margins is above 0 for a share of the time between them.
-        share = passed.margin / (passed.margin - margin)
-        extremes.rolling_ends_at = passed.forces_time + share * (time - passed.forces_time)
+        extremes.rolling_ends_at = formulas.zero_crossing(
+            passed.forces_time, passed.margin, time, margin
+        )
     passed.forces_time = time
     passed.margin = margin
 
@@ -170,7 +171,7 @@ def _add_step(numbers, friction, slides, time, state, passed, extremes):
     kinetic = formulas.kinetic_energy(numbers, phi, phi_dot, u_dot, u_dot / numbers.radius, 0.0)
     energy = kinetic + formulas.potential_energy(numbers, phi, u, 0.0)
     swing = formulas.swing_energy(numbers, phi, phi_dot)
-    change = swing - (passed.swing0 + formulas.potential_drop(numbers, phi, passed.phi0))
+    change = formulas.swing_energy_change(numbers, swing, phi, passed.swing0, passed.phi0)
     passed.drift += change * abs(phi - passed.phi)
     extremes.largest_turn = max(extremes.largest_turn, abs(phi - passed.phi0))
     extremes.largest_distance = max(extremes.largest_distance, abs(u - passed.u0))

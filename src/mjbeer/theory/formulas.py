@@ -2,7 +2,7 @@
 
 They take numbers and arrays alike: NumPy evaluates them for all samples of a motion, and a compiled
 loop for one step after the other. Angles are in [rad], everything else in SI units. The first
-argument has the numbers of a scene by name. The first four formulas, those of the swing, need only
+argument has the numbers of a scene by name. The first five formulas, those of the swing, need only
 the numbers that an `Oscillator` has, too.
 """
 
@@ -78,6 +78,16 @@ def potential_drop(swing: Any, phi: Value, from_phi: Value) -> Value:
     return swing.ramp * turned - 2 * swing.depth * np.sin(middle) * np.sin(turned / 2)
 
 
+def swing_energy_change(
+    swing: Any, energy: Value, phi: Value, from_energy: Value, from_phi: Value
+) -> Value:
+    """Return the change of J phi_dot^2 / 2 + V [J], which a motion without damping conserves.
+
+    The kinetic energy of the swing is `energy` at phi, and was `from_energy` at `from_phi`.
+    """
+    return energy - (from_energy + potential_drop(swing, phi, from_phi))
+
+
 def phi_acceleration(swing: Any, phi: Value, phi_dot: Value, torque: Value) -> Value:
     """Return phi_ddot [rad/s^2], with a `torque` [N m] beside those of inertia and weight.
 
@@ -133,6 +143,23 @@ def friction_of_sliding(scene: Any, u_ddot: Value, damping_torque: Value) -> Val
     Friction and damping together turn the can: a F - T = I_can u_ddot / a.
     """
     return scene.can_inertia / scene.radius**2 * u_ddot + damping_torque / scene.radius
+
+
+def rolling_margin(normal: Value, friction: Value, coefficient: float) -> Value:
+    """Return the force [N] that keeps a can from leaving the incline or from slipping.
+
+    It is the lesser of the two: N, and by how much F may still grow at this coefficient of
+    friction. It is negative where the can cannot roll.
+    """
+    if coefficient == np.inf:
+        return normal
+    return np.minimum(normal, coefficient * normal - np.abs(friction))
+
+
+def zero_crossing(time: Value, force: Value, later_time: Value, later_force: Value) -> Value:
+    """Return the time [s] at which the line between a force and a `later_force` is 0."""
+    share = force / (force - later_force)
+    return time + share * (later_time - time)
 
 
 def kinetic_energy(

@@ -13,14 +13,15 @@ the can drags it along by three laws:
 `_laws` computes the factors layers, creep and swing. `_fit` replaces the laws with a polynomial in
 W, as MuJoCo's damping is one:
 
-1. The polynomial has the right torque at one slip rate, the rate of the fit. There the torque is
-   that of layers of rolling or that of creep, whichever is larger.
-2. The rate of the fit is that of steady rolling or the *swing rate*, whichever is higher. At the
-   swing rate both kinds of layers have the same torque; a swing of about two radians slips as fast.
-3. For layers of rolling, the polynomial follows W^1.5 over a decade of slip rates. Where steady
-   rolling is slower than all of the decade about the swing rate, the can mainly swings. The slower
-   it rolls, the less the polynomial is then curved, down to the straight line of the layers of
-   swinging. So the damping changes continuously with incline and viscosity.
+1. The polynomial has the right torque at one slip rate, the rate of the fit. The right torque is
+   the larger of two: the one of layers of rolling and the one of creep.
+2. The rate of the fit is the higher of two: the slip rate of steady rolling and the *swing rate*.
+   At the swing rate both kinds of layers have the same torque; a swing of about two radians slips
+   as fast.
+3. For layers of rolling, the polynomial follows W^1.5 in a decade of slip rates. If steady rolling
+   is slower than the whole decade of a fit at the swing rate, the can mainly swings. The slower it
+   then rolls, the smaller is the quadratic term, down to the linear law of layers of swinging. So
+   the damping changes continuously with incline and viscosity.
 
 A real liquid sloshes as well: in a half-full can that is held, without viscosity, 1.26 times as
 fast as the lump swings.
@@ -77,15 +78,17 @@ X is the length of wall that the layer covers, and L its width.
 ENDS = 2 * 0.61592
 """Torque of von Karman's layers on two discs, divided by rho sqrt(nu) W^1.5 and by the second
 moment of the discs' area."""
-# The polynomial that follows W^1.5 over a decade is x + x^2, where x is W divided by the decade's
-# geometric mean and goes from 10^-0.5 to 10^0.5. Divided by x^1.5 it is sqrt(x) + 1/sqrt(x). This
-# ratio is 2 in the middle and largest at both ends; that of no other polynomial with non-negative
-# coefficients varies less. Made exact where the ratio has the mean of its extremes, the polynomial
-# is within 7.85 %.
+# The polynomial that follows W^1.5 in a decade is a multiple of x + x^2, where x goes from 10^-0.5
+# to 10^0.5: it is W divided by the geometric mean of the decade's ends. Divided by x^1.5, x + x^2
+# is the ratio sqrt(x) + 1/sqrt(x), which has its minimum, 2, in the middle, and its maximum, 2.34,
+# at both ends. No other polynomial with non-negative coefficients has a ratio that varies less. The
+# multiple is the one with which the polynomial is exact where the ratio is 2.17, the mean of 2 and
+# 2.34. In all of the decade it is then within 7.85 % of W^1.5.
 _MEAN_RATIO = (2 + (10**0.25 + 10**-0.25)) / 2
-"""Mean of the extremes of that ratio."""
+"""Mean of the minimum and the maximum of that ratio."""
 _QUADRATIC_SHARE = (1 + math.sqrt(1 - 4 / _MEAN_RATIO**2)) / 2
-"""Share q of the quadratic term in the torque of that polynomial where it is exact.
+"""Share q of the quadratic term in the torque of that polynomial, at the higher of the two rates
+where it is exact.
 
 There q = x^2/(x + x^2) = x/(1 + x), and q (1 - q) = x/(1 + x)^2 = 1/_MEAN_RATIO^2."""
 DECADE = (0.139, 1.39)
@@ -100,8 +103,10 @@ FILM_LOAD = 4.4427
 """Largest volume of a film that a turning wall carries round, divided by a L sqrt(nu a W/g).
 
 More liquid than that stays below as a pool (Moffatt, J. Mecanique 16, 651, 1977)."""
-_CARRIED = 1 / 3
-"""Share of the liquid in such a film, from which on what is left below counts as no lump."""
+_COATING_SHARE = 1 / 3
+"""Share of the liquid that such a film can hold at the `coating_rate`.
+
+At higher slip rates, what is left below counts as no lump."""
 _TURBULENT = 1e6
 """Reynolds number of a layer at its end from which on it may be turbulent on any wall."""
 
@@ -196,15 +201,15 @@ def liquid_in(
     fitted = _fit(laws, steady_rate)
     if fitted.quadratic_share > 0:
         _require_laminar(free, shape, properties, fitted.rate)
-    film = _film(free, shape, properties)
+    coating_rate = _coating_rate(free, shape, properties)
     return Liquid(
         name,
         properties.density,
         properties.viscosity,
         law=fitted.law,
         slip_rate=steady_rate,
-        carried=film * math.sqrt(steady_rate),
-        damping=_damping(laws, fitted, film),
+        carried=_share_in_film(coating_rate, steady_rate),
+        damping=_damping(laws, fitted, coating_rate),
     )
 
 
@@ -310,12 +315,12 @@ def _fit(laws: _Laws, steady_rate: float) -> _Fit:
     return _Fit(rate, secant, quadratic_share, law)
 
 
-def _damping(laws: _Laws, fitted: _Fit, film: float) -> Damping:
+def _damping(laws: _Laws, fitted: _Fit, coating_rate: float) -> Damping:
     """Return the damping of a liquid, with the slip rates at which it is valid.
 
     A polynomial that follows W^1.5 is valid in its decade. The straighter it is, the lower are the
     rates from which on it is valid, down to 0. Creep ends where layers of rolling have the same
-    torque. `film` is the share of the liquid that a film can hold, divided by sqrt(W).
+    torque.
     """
     lowest = DECADE[0] * fitted.rate * fitted.quadratic_share / _QUADRATIC_SHARE
     highest = max(DECADE[1] * fitted.rate, (laws.creep / laws.layers) ** 2)
@@ -326,7 +331,7 @@ def _damping(laws: _Laws, fitted: _Fit, film: float) -> Damping:
         linear=(1 - fitted.quadratic_share) * fitted.secant,
         quadratic=quadratic,
         valid_rates=(lowest, highest),
-        coating_rate=(_CARRIED / film) ** 2,
+        coating_rate=coating_rate,
     )
 
 
@@ -341,14 +346,24 @@ def _require_laminar(free: Scene, shape: Segment, properties: Properties, slip_r
         )
 
 
-def _film(free: Scene, shape: Segment, properties: Properties) -> float:
-    """Return the share of the liquid that a film on the wall can hold, divided by sqrt(W).
+def _coating_rate(free: Scene, shape: Segment, properties: Properties) -> float:
+    """Return the slip rate W [rad/s] at which a film on the wall can hold `_COATING_SHARE`.
 
-    It is FILM_LOAD a sqrt(nu a/g)/A, with the area A of the liquid's cross section.
+    The share that it can hold is FILM_LOAD a sqrt(nu a W/g)/A, with the area A of the liquid's
+    cross section.
     """
     a = free.can.radius
     largest_area = FILM_LOAD * a * math.sqrt(properties.viscosity * a / free.gravity)
-    return largest_area / (a**2 * shape.area)
+    share_by_root = largest_area / (a**2 * shape.area)  # divided by sqrt(W)
+    return (_COATING_SHARE / share_by_root) ** 2
+
+
+def _share_in_film(coating_rate: float, slip_rate: float) -> float:
+    """Return the share of the liquid that a film can hold at a slip rate [rad/s]; from 1 on, all.
+
+    It grows as the square root of the slip rate, and is `_COATING_SHARE` at the `coating_rate`.
+    """
+    return _COATING_SHARE * math.sqrt(slip_rate / coating_rate)
 
 
 def lump_warning(
@@ -361,8 +376,8 @@ def lump_warning(
     """Return why a liquid is no lump, in one sentence, or None if it is one.
 
     It slips by up to `slip_rate` [rad/s]. `spread` says where or when `centrifugal_ratio` is more
-    than 1, and is empty if it never is. The can has turned by so many `turns`: a film grows with
-    the wall that has come up.
+    than 1, and is empty if it never is. The can has made so many `turns`. In the first one the film
+    is only on the wall that has come out of the liquid so far.
     """
     if scene.damping_law.valid_rates is None:
         return None
@@ -371,10 +386,9 @@ def lump_warning(
     if spread:
         exceeds = "the wall's centrifugal acceleration is more than g cos(alpha)"
         reasons.append(f"{spread} {exceeds}, which spreads it round the can")
-    # What a film can hold grows as the square root of the slip rate.
-    carried = _CARRIED * math.sqrt(slip_rate / scene.damping_law.coating_rate) * min(1.0, turns)
-    if carried > _CARRIED:
-        share = f"{100 * carried:.0f} %" if carried < 1 else "all"
+    in_film = _share_in_film(scene.damping_law.coating_rate, slip_rate) * min(1.0, turns)
+    if in_film > _COATING_SHARE:
+        share = f"{100 * in_film:.0f} %" if in_film < 1 else "all"
         film = f"at {slip_rate:.3g} rad/s the film on the wall can hold {share} of it"
         reasons.append(f"it coats the can: {film}")
     if not lowest * (1 - 1e-9) <= slip_rate <= highest:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mjbeer.theory import equations
+from mjbeer.theory import equations, formulas
 from mjbeer.theory.equations import Coordinates, InitialState, select_samples
 from mjbeer.theory.liquid import centrifugal_ratio, lump_warning
 from mjbeer.theory.scene import Scene
@@ -97,8 +97,10 @@ class Record:
         """Return the error of phi [rad], relative beyond 1 rad, that the swing's energy implies.
 
         An energy that is off by a share of itself makes phi_dot, and the angle covered meanwhile,
-        off by about that share. Errors of opposite sign cancel. Hence the error of phi is about
-        `swing_drift` divided by the energy. With damping or drag there is none.
+        off by half that share in a rotation or a small swing, and by up to twice the share in a
+        swing that nearly reaches the crest. The share itself stands for all of them. Errors of
+        opposite sign cancel. Hence `swing_drift` is divided by the energy. With damping or drag
+        there is none.
         """
         return self.swing_drift / self._swing_scale / max(1.0, self.largest_turn)
 
@@ -180,7 +182,9 @@ class RecordMaker:
         """
         oscillator = self.record.scene.oscillator
         initial_swing = oscillator.kinetic_energy(first.phi, first.phi_dot)
-        change = swing - (initial_swing + oscillator.drop(motion.phi, first.phi))
+        change = formulas.swing_energy_change(
+            oscillator, swing, motion.phi, initial_swing, first.phi
+        )
         covered = np.abs(np.diff(motion.phi, prepend=self._last_phi))
         drift = self._swing_drift + np.cumsum(change * covered)
         self._last_phi = float(motion.phi[-1])
@@ -223,9 +227,7 @@ class RecordMaker:
         record.needed_friction = _largest(record.needed_friction, forces.needed_friction)
         if math.isfinite(record.rolling_ends_at):
             return
-        margin = forces.normal
-        if math.isfinite(record.friction):
-            margin = np.minimum(margin, record.friction * forces.normal - np.abs(forces.friction))
+        margin = formulas.rolling_margin(forces.normal, forces.friction, record.friction)
         if margin.min() < 0:
             index = int(np.argmax(margin < 0))
             after = Margin(float(time[index]), float(margin[index]))
@@ -255,8 +257,7 @@ def zero_crossing(before: Margin, after: Margin) -> float:
     """
     if not before.time < after.time:
         return after.time
-    share = before.force / (before.force - after.force)
-    return before.time + share * (after.time - before.time)
+    return formulas.zero_crossing(before.time, before.force, after.time, after.force)
 
 
 class Diagnosis(NamedTuple):

@@ -65,7 +65,7 @@ class Accelerations(NamedTuple):
     """MuJoCo's accelerations in a state."""
 
     phi_second: float  # second derivative of phi in Sundman time [rad/s^2]
-    steady: float  # of the slide less arm sin(phi), in time [m/s^2]
+    steady: float  # second derivative of the steady slide in t [m/s^2]
 
 
 class History(NamedTuple):

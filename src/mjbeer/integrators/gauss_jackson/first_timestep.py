@@ -11,8 +11,12 @@ _ORDER = 14
 The method's order is 13. One more suits random motions as well, to 4% of the timestep from 1e-5 to
 1e-11 rad, and gives tight tolerances slightly longer steps, over which less rounding adds up."""
 _SHARE = 0.34
-"""The timestep at which the error of a cycle would be 1 rad, if it grew with this power so far. It
-is a share of the distance of the nearest pole, fitted to random motions."""
+"""The timestep at which the error of a cycle would be 1 rad, if it grew with this power so far,
+divided by the distance of the nearest pole.
+
+It was fitted to random motions. In 90 others, of sliding and frozen beer and of pendulums in
+wheels, for 0.5 to 4 s from rest at up to 3 rad, the timestep that just reached a tolerance of 1e-11
+to 1e-5 rad was 0.8 to 2.2 times the one given here; the median was 1.1 times."""
 _LOOSEST = 1e-5
 """Tolerance [rad] above which the timestep grows no more: the method would become unstable."""
 _FEWEST = 8
@@ -56,14 +60,15 @@ def first_timestep(
 
 def _largest_kinetic_energy(law: SwingLaw, phi0: float, phi_dot0: float, duration: float) -> float:
     """Return the largest kinetic energy of a motion [J], or a little more."""
-    # V' = -ramp + depth sin(phi - bottom) vanishes at the rest and at the crests. The rest lies a
-    # lean, asin(ramp/depth), beside the bottom; the crests lie half a turn from its mirror image.
+    # V' = -ramp + depth sin(phi - bottom) vanishes at the rest, bottom + lean, and at the crests,
+    # bottom + pi - lean and a turn before, where sin(lean) = ramp/depth. The middle between these
+    # two crests is bottom - lean. Take the middle that is nearest to the start.
     has_well = law.depth > abs(law.ramp)
     lean = math.asin(law.ramp / law.depth) if has_well else math.copysign(math.pi / 2, law.ramp)
-    mirror_image = law.bottom - lean
-    mirror_image += math.tau * round((phi0 - mirror_image) / math.tau)  # in the turn of the start
-    rest = mirror_image + 2 * lean
-    lower_crest = mirror_image + math.copysign(math.pi, law.ramp)
+    middle = law.bottom - lean
+    middle += math.tau * round((phi0 - middle) / math.tau)
+    rest = middle + 2 * lean
+    lower_crest = middle + math.copysign(math.pi, law.ramp)  # the one downhill
     energy = law.inertia(phi0) * phi_dot0**2 / 2 + law.potential(phi0)
     kinetic = max(0.0, energy - law.potential(rest))
     if has_well and energy <= law.potential(lower_crest):

@@ -6,9 +6,9 @@ the corrected phi, the law that phi nearly obeys says how the acceleration chang
 method would be unstable. States are read off two steps later, with accelerations on both sides,
 where the formula errs far less.
 
-Steps are even in Sundman time. If the model has a slide, the slide less arm sin(phi) is evenly
-accelerated, and is integrated in t. The motion is that of MuJoCo's accelerations alone: with a
-wrong law the steps must only be shorter.
+Steps are even in Sundman time. If the model has a slide, the *steady slide*, which is the slide
+less arm sin(phi), is evenly accelerated, and is integrated in t. The motion is that of MuJoCo's
+accelerations alone: with a wrong law the steps must only be shorter.
 
 O. Montenbruck and E. Gill, Satellite Orbits, section 4.2; M. M. Berry and L. M. Healy,
 Implementation of Gauss-Jackson integration for orbit propagation, J. Astronaut. Sci. 52 (2004), and
@@ -69,16 +69,13 @@ _LAST = row_of(0)
 
 
 class _Totals(NamedTuple):
-    """Sums of many terms: each is an array of the sum and of the rounding error it carries.
-
-    Steady is the acceleration of the slide less arm sin(phi), whose position and velocity are here.
-    """
+    """Sums of many terms: each is an array of the sum and of the rounding error it carries."""
 
     first_sum: np.ndarray  # of the accelerations of phi, in units of the step
     second_sum: np.ndarray  # of these sums
     time: np.ndarray  # at the last state that was read off [s]
-    position: np.ndarray  # of the slide less arm sin(phi), at that time [m]
-    velocity: np.ndarray  # of the same [m/s]
+    position: np.ndarray  # of the steady slide at that time [m]
+    velocity: np.ndarray  # of the steady slide at that time [m/s]
 
 
 class _Work(NamedTuple):
@@ -287,7 +284,7 @@ def _take_step(dynamics, sundman, timestep, work, end):
 
 @inlined
 def _mean_steady(history, index, before, after):
-    """Return the mean acceleration of the slide less arm sin(phi) in a step [m/s^2].
+    """Return the mean acceleration of the steady slide in a step [m/s^2].
 
     The step ends at an `index` of the history, and its nodes are `before` and `after`. The
     acceleration would be constant but for rounding. Rounding is largest where the load is fastest,

@@ -44,7 +44,7 @@ class WholeStep(NamedTuple):
     after: Node
     duration: float  # [s]
     end_time: float  # and a little more: up to this time samples are in the step [s]
-    steady: float  # mean acceleration of the slide less arm sin(phi) [m/s^2]
+    steady: float  # mean acceleration of the steady slide [m/s^2]
 
 
 class StepCurve(NamedTuple):
@@ -61,21 +61,22 @@ class StepCurve(NamedTuple):
 
 
 @inlined
-def _phi(curve, ahead, added):
-    """Return phi [rad] where the last accelerations have `added` so much to the sums.
+def _phi(curve, back, added):
+    """Return phi [rad] so many steps `back` from the last acceleration.
 
-    The step after the last acceleration is so many steps `ahead`, which is 1 + back.
+    It is the formula for a position in the head of `weights`. There, the last accelerations have
+    `added` so much to both sums.
     """
-    scaled_phi = curve.second_sum - ahead * curve.first_sum + added
+    scaled_phi = curve.second_sum - (1 + back) * curve.first_sum + added
     return curve.timestep * curve.timestep * scaled_phi
 
 
 @inlined
 def end_node(sundman, curve, accelerations, end):
     """Return the node at the end of the step, by the accelerations before index `end`."""
-    ahead = curve.back  # one less than at the start of the step
-    row = ahead  # of the weights there, as `row_of` says
-    phi = _phi(curve, float(ahead), weighted(POSITION_WEIGHTS, row, accelerations, end))
+    back = curve.back - 1  # a step later than its start
+    row = 1 + back  # of the weights there, as in `row_of`
+    phi = _phi(curve, float(back), weighted(POSITION_WEIGHTS, row, accelerations, end))
     scaled_rate = curve.first_sum + weighted(VELOCITY_WEIGHTS, row, accelerations, end)
     return Node(phi, curve.timestep * scaled_rate, dt_ds(sundman, phi))
 
@@ -87,9 +88,9 @@ def whole_duration(sundman, curve, accelerations, end):
     first_row = (curve.back - 1 - LAG) * count
     mean = 0.0
     for point in range(count):
-        ahead = 1 + curve.back - sundman.points[point]
+        back = curve.back - sundman.points[point]
         row = first_row + point
-        phi = _phi(curve, ahead, weighted(sundman.position_weights, row, accelerations, end))
+        phi = _phi(curve, back, weighted(sundman.position_weights, row, accelerations, end))
         mean += sundman.weights[point] * dt_ds(sundman, phi)
     return curve.timestep * mean
 
@@ -115,7 +116,7 @@ def node_at(sundman, curve, s_share):
     for k in range(COUNT + 2):
         slope = slope * x + value
         value = value * x + curve.coefficients[k]
-    phi = _phi(curve, 1 + back, value)
+    phi = _phi(curve, back, value)
     rate = curve.timestep * (curve.first_sum - slope)  # `back` counts against time
     return Node(phi, rate, dt_ds(sundman, phi))
 
@@ -130,7 +131,7 @@ def duration(sundman, curve, s_share):
         value = 0.0
         for k in range(COUNT + 2):
             value = value * x + curve.coefficients[k]
-        mean += sundman.weights[point] * dt_ds(sundman, _phi(curve, 1 + back, value))
+        mean += sundman.weights[point] * dt_ds(sundman, _phi(curve, back, value))
     return curve.timestep * s_share * mean
 
 
@@ -148,11 +149,11 @@ def find(sundman, curve, step, since):
     for _ in range(_ATTEMPTS):
         node = node_at(sundman, curve, s_share)
         time_left = since - duration(sundman, curve, s_share)
-        ahead = time_left / node.dt_ds  # Newton's step in s
-        # Its second term has the growth of dt/ds: the derivative in s, divided by dt/ds.
+        newton_step = time_left / node.dt_ds  # in s
+        # The next term of that series has the growth of dt/ds: its slope in s, divided by dt/ds.
         growth = sundman.varying * sundman.multiple * math.sin(2 * sundman.multiple * node.phi)
         growth *= node.rate / (2 * node.dt_ds * node.dt_ds)
-        s_share += ahead * (1 - growth * ahead / 2) / curve.timestep
+        s_share += newton_step * (1 - growth * newton_step / 2) / curve.timestep
         if abs(time_left) <= _PUNCTUAL * step.duration:
             break
     return node_at(sundman, curve, s_share)

@@ -27,8 +27,8 @@ _MOST_POINTS = 100
 """Largest number of points at which dt/ds is looked at in a step: so many are needed where a wheel
 has a thousandth of its load's mass."""
 _LARGEST_ELLIPSE = 20.0
-"""Largest ellipse that `_points_for` assumes: a larger one would give too few points, as phi is not
-linear in s within a step."""
+"""Largest size of a Bernstein ellipse that `_points_for` assumes: a larger one would give too few
+points, as phi is not linear in s within a step."""
 
 
 class PendulumLaw(NamedTuple):
@@ -50,7 +50,7 @@ class SundmanTime(NamedTuple):
     varying: float
     multiple: float  # 1 for a coupling, 1/2 for a chord
     law: PendulumLaw  # that phi nearly obeys
-    arm: float  # the slide less arm sin(phi) is evenly accelerated [m]
+    arm: float  # of the steady slide, as in `SwingLaw` [m]
     points: np.ndarray  # of Gauss's formula in a step, between 0 and 1
     weights: np.ndarray  # of these points, whose sum is 1
     position_weights: np.ndarray  # of the accelerations, for phi at these points
@@ -93,9 +93,10 @@ def _points_for(
 ) -> int:
     """Return the number of points with which Gauss's formula gives a duration to some precision.
 
-    With each point its error falls by the square of an ellipse's size. The foci of this ellipse in
-    the complex plane are the ends of the step, and it passes through the angle at which dt/ds
-    vanishes. Its size is the sum of its half-axes, divided by half the distance of its foci.
+    With each point its error falls by the square of the size of a Bernstein ellipse (L. N.
+    Trefethen, Approximation Theory and Approximation Practice, chapter 19). The foci of this
+    ellipse in the complex plane are the ends of the step, and it passes through the angle at which
+    dt/ds vanishes. Its size is the sum of its half-axes, divided by half the distance of its foci.
     """
     logarithm = math.log(_LARGEST_ELLIPSE)  # of the size
     if varying > 0 and largest_turn > 0:

@@ -14,8 +14,8 @@ class SwingLaw(NamedTuple):
         J = base + chord sin^2(phi/2) + coupling sin^2(phi),
         V = -ramp phi - depth cos(phi - bottom).
 
-    One of `chord` and `coupling` is 0. If the model has a slide, the slide less arm sin(phi) is
-    evenly accelerated.
+    One of `chord` and `coupling` is 0. If the model has a slide, the *steady slide*, which is the
+    slide less arm sin(phi), is evenly accelerated.
 
     J and V are those of `theory.formulas`, written again here because the integrators import no
     theory.
