@@ -392,7 +392,7 @@ def test_an_equality_as_usually_written_hardly_rolls() -> None:
 
 
 @pytest.mark.parametrize(
-    "name, slip, slip_without",
+    ("name", "slip", "slip_without"),
     [("frozen_contact", 1.4e-9, 2.2e-7), ("sliding_contact", 2.8e-8, 7.2e-8)],
 )
 def test_a_contact_needs_its_options(name: str, slip: float, slip_without: float) -> None:
