@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mjbeer.model import looks, mjcf_file
+from mjbeer.model import looks_tree, mjcf_file
 from mjbeer.model.check import SHIPPED, digest
 from mjbeer.model.joints import initial_joints
 from mjbeer.model.model_numbers import ModelNumbers
@@ -94,7 +94,7 @@ def text(name: str, folder: pathlib.Path) -> str:
         numbers = ModelNumbers(template.scene, template.setting, visuals=True)
         mjcf_file.write(root, numbers.parameters, path, _DIGITS)
         _replace_keyframes(root, template.scene, template.keys)
-    looks.add_looks(root, template.looks, folder)
+    looks_tree.add_looks(root, template.looks, folder)
     root.set("model", name)
     sources = (
         f"mechanics/{template.mechanics}.xml, which has the reasons, and looks/{template.looks}.xml"

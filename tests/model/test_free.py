@@ -13,7 +13,7 @@ import pytest
 from mjbeer import Can, attach, build, exact, export, frozen, sliding, standing, wall_rise
 from mjbeer.cli.app import main
 from mjbeer.exceptions import ParameterError, TemplateError
-from mjbeer.model import free_numbers, looks, setting
+from mjbeer.model import beer_mesh, free_numbers, setting
 from mjbeer.studies.validation import standing_checks as measured
 from tests.support.scenes import METAL
 
@@ -21,7 +21,7 @@ from tests.support.scenes import METAL
 @pytest.mark.parametrize("fill", [0.1, 0.5, 1.0])
 def test_a_lying_can_has_the_inertia_of_its_parts(fill: float) -> None:
     """Against a mesh of the beer; and a can's wall and ends against their sum."""
-    vertices, faces = looks.beer(fill, METAL.radius, METAL.length)
+    vertices, faces = beer_mesh.beer(fill, METAL.radius, METAL.length)
     spec = mujoco.MjSpec()
     exactly = mujoco.mjtMeshInertia.mjMESH_INERTIA_EXACT
     spec.add_mesh(name="beer", uservert=vertices.ravel(), userface=faces.ravel(), inertia=exactly)

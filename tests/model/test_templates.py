@@ -408,6 +408,42 @@ def test_a_contact_needs_its_options(name: str, slip: float, slip_without: float
     assert slip_from(without_options, "swing") == pytest.approx(slip_without, rel=0.2)
 
 
+def places_from(text: str, key: str) -> np.ndarray:
+    """The places and turns of a free can in two seconds from a keyframe, shape (samples, nq)."""
+    model = mujoco.MjModel.from_xml_string(text)
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, model.key(key).id)
+    places = []
+    for _ in range(2000):
+        places.append(data.qpos.copy())
+        mujoco.mj_step(model, data)
+    return np.array(places)
+
+
+def test_a_lying_can_needs_its_options() -> None:
+    """What the comment in the file says: how far the can slides instead of rolling."""
+    text = (OWN / "mechanics" / "lying.xml").read_text()
+    without_options, count = re.subn(
+        r'cone="elliptic" impratio="100"|<flag refsafe="disable"/>', "", text
+    )
+    assert count == 2
+    for file, expected in ((text, 2.9e-8), (without_options, 1.05e-7)):
+        places = places_from(file, "swing")
+        along = places[:, 0] * np.cos(np.radians(10)) - places[:, 2] * np.sin(np.radians(10))
+        turn = np.unwrap(2 * np.arctan2(places[:, 5], places[:, 3]))
+        slip = np.ptp(along - METAL.radius * turn)
+        assert slip == pytest.approx(expected, rel=0.2)
+
+
+def test_a_standing_can_needs_its_cone() -> None:
+    """What the comment in the file says: how far the can creeps, to the one digit it shows."""
+    text = (OWN / "mechanics" / "standing.xml").read_text()
+    pyramidal = text.replace('cone="elliptic"', "")
+    assert pyramidal != text
+    assert np.ptp(places_from(text, "slosh")[:, 0]) == pytest.approx(2.4e-5, rel=0.2)
+    assert np.ptp(places_from(pyramidal, "slosh")[:, 0]) == pytest.approx(4.8e-5, rel=0.2)
+
+
 def test_a_constraint_that_is_softer_is_stepped_as_it_stands(copy: pathlib.Path) -> None:
     """Its accelerations are those of rolling, and what it creeps shows in the run."""
     edit(copy, "mechanics/frozen_contact", 'solimp="0.9999 0.9999"', 'solimp="0.9 0.9"')

@@ -1,10 +1,9 @@
-"""The looks of a can: geoms, meshes and cameras, which are added to its mechanics.
+"""The looks of a can: geoms, meshes and cameras, fitted to its sizes and its load.
 
 Across the can's axis, the y axis, everything grows with the radius, and along it with the can's
 length.
 """
 
-import copy
 import functools
 import math
 import pathlib
@@ -17,13 +16,12 @@ import numpy as np
 
 from mjbeer.exceptions import TemplateError
 from mjbeer.model import mjcf_file
+from mjbeer.model.beer_mesh import EDGES, Mesh, beer, foam
+from mjbeer.model.looks_tree import add_looks
 from mjbeer.theory.can import LENGTH, RADIUS, Can
 from mjbeer.theory.scene import Scene
-from mjbeer.theory.segment import segment
 from mjbeer.theory.standing import Standing
 
-SHARED_FILES = ("assets.xml", "scene.xml")
-"""The files that all cans include: meshes and materials, and what stands around a can."""
 VISUAL_GROUP = 2
 """The group of the geoms that are only drawn, as in the class "visual" of the mechanics files."""
 TURNING = ("can_mark", "can_spot", "can_tab", "can_mouth", "can_spokes")
@@ -33,9 +31,6 @@ WALL = 0.06
 fills the inside."""
 FOAM = 0.025
 """Largest thickness of the foam, in radii."""
-EDGES = 256
-"""Number of edges around the arc of the beer. The error of the polygon falls as its square; with
-256 edges mass, centroid and inertia are within 6e-4 for every fill up to 0.95."""
 PLAIN_EDGES = 32
 """Number of edges around the arc of the beer where it is drawn plainly: its area is within 4 %."""
 _PLAIN = ("can_wall", "can_end", "can_mark")
@@ -51,18 +46,6 @@ _NEEDED = {
     "geom": ("board", "wall"),
 }
 """The elements of all looks that mjbeer addresses by name."""
-
-
-class Mesh(NamedTuple):
-    """A closed surface whose faces are oriented outwards.
-
-    Where two faces meet at an edge that is to look sharp, each has vertices of its own.
-    """
-
-    vertices: np.ndarray
-    """Places [m], shape (vertices, 3)."""
-    faces: np.ndarray
-    """Indices of vertices, shape (faces, 3)."""
 
 
 class Cylinder(NamedTuple):
@@ -100,44 +83,6 @@ def drawn_spec(root: ET.Element, path: pathlib.Path, can: Scene | Standing) -> m
     return spec
 
 
-def add_looks(root: ET.Element, kind: str, folder: pathlib.Path) -> None:
-    """Add the looks of a kind of can, from a folder of MJCF, to the tree of a mechanics file.
-
-    What the looks have in a body is added to the body of this name, if there is one; a load without
-    a body of its own is in the can. A geom replaces the one of its name, which shows where the load
-    is in a mechanics file that is opened by itself.
-    """
-    looks = mjcf_file.read(folder / "looks" / f"{kind}.xml")
-    bodies = {body.get("name"): body for body in root.iter("body")}
-    bodies.setdefault("load", bodies["can"])
-    for drawn in looks.iter("geom"):
-        mjcf_file.remove(root, f"geom[@name='{drawn.get('name')}']")
-    world = root.find("worldbody")
-    for parent in (*looks.iter("worldbody"), *looks.iter("body")):
-        target = world if parent.tag == "worldbody" else bodies.get(parent.get("name"))
-        if target is not None:  # A can without modes has no body "slosh1".
-            _add_elements(target, [child for child in parent if child.tag != "body"])
-    _level(root)
-    for file in reversed(SHARED_FILES):
-        root.insert(0, ET.Element("include", file=file))
-
-
-def _add_elements(body: ET.Element, elements: list[ET.Element]) -> None:
-    """Add elements to a body, before the bodies in it."""
-    tags = [child.tag for child in body]
-    place = tags.index("body") if "body" in tags else len(tags)
-    body[place:place] = copy.deepcopy(elements)
-
-
-def _level(root: ET.Element) -> None:
-    """Turn the frame of the cameras back by the incline, if there is one."""
-    frame = mjcf_file.find(root, "frame level")
-    incline = mjcf_file.find(root, "body incline")
-    if frame is not None and incline is not None:
-        angle = float(incline.get("euler", "0 0 0").split()[1])
-        frame.set("euler", f"0 {0 - angle:.17g} 0")
-
-
 def _require_elements(spec: mujoco.MjSpec, can: Scene | Standing, folder: pathlib.Path) -> None:
     """Refuse looks without an element that mjbeer addresses by name."""
     own_geoms = (*_UPRIGHT_GEOMS, *beer_column(can)) if isinstance(can, Standing) else ("load",)
@@ -172,9 +117,10 @@ def _fit_to_standing(spec: mujoco.MjSpec, standing: Standing) -> None:
 def beer_column(standing: Standing) -> dict[str, Cylinder]:
     """Return the cylinders that draw the beer of a standing can, by the names of their geoms.
 
-    The upper one tilts about the pivot of the first mode. A ball around the pivot that lies in the
-    can holds it at every tilt, so it is narrower than the can. If the ball is smaller than the
-    distance of its lower face, as in a nearly full can, it is made too small to be seen.
+    The upper cylinder tilts about the pivot of the first mode, and must stay in the can at every
+    tilt. So it is narrower than the can: it lies in the largest ball about the pivot that the can
+    has room for. If that ball does not reach down to the cylinder's lower face, as in a nearly full
+    can, the cylinder is made too small to be seen.
     """
     height = standing.height
     radius = standing.can.radius
@@ -345,52 +291,9 @@ def shape_beer(spec: mujoco.MjSpec, scene: Scene, edges: int = EDGES) -> None:
     _reshape(liquid, shape)
     # At most a quarter of the beer's depth, and of the room above it.
     thickness = min(FOAM, fill / 2, (1 - fill) / 2)
-    foam = spec.mesh("foam")
+    foam_mesh = spec.mesh("foam")
     foam_geom = spec.geom("foam")
-    if foam is not None and thickness >= 1e-4:  # What is thinner is not seen.
-        _reshape(foam, _foam(fill, thickness, radius, length))
+    if foam_mesh is not None and thickness >= 1e-4:  # What is thinner is not seen.
+        _reshape(foam_mesh, foam(fill, thickness, radius, length))
     elif foam_geom is not None:
         spec.delete(foam_geom)
-
-
-def beer(fill: float, radius: float, length: float, edges: int = EDGES) -> Mesh:
-    """Return the beer of a `fill`, eq. (32), in a can of `radius` and `length` [m]: a prism."""
-    beta = segment(fill).half_angle
-    angles = np.linspace(-beta, beta, edges + 1)
-    if fill == 1:
-        # The arc of a full can closes on itself, and its last vertex would repeat the first.
-        angles = angles[:-1]
-    return _prism(radius * np.stack([np.sin(angles), -np.cos(angles)], axis=1), length)
-
-
-def _foam(fill: float, thickness: float, radius: float, length: float) -> Mesh:
-    """Return the foam on beer of a given `fill`; its `thickness` is in radii."""
-    bottom = 2 * fill - 1
-    heights = bottom + thickness * np.array([0, 0, 1, 1])
-    across = np.sqrt((1 - heights) * (1 + heights)) * [-1, 1, 1, -1]
-    return _prism(radius * np.stack([across, heights], axis=1), length)
-
-
-def _prism(outline: np.ndarray, length: float) -> Mesh:
-    """Return the prism of a `length` [m] on a convex outline in (x, z).
-
-    The outline is counter-clockwise seen from -y. The near face and the side from the last point to
-    the first, which is the beer's surface, look flat.
-    """
-    n = len(outline)
-    front = np.insert(outline, 1, -length / 2, axis=1)
-    back = np.insert(outline, 1, length / 2, axis=1)
-    ends = [n - 1, 0]
-    vertices = np.concatenate([front, front, back, front[ends], back[ends]])
-    near = np.stack([np.zeros(n - 2, int), np.arange(1, n - 1), np.arange(2, n)], 1)
-    far = 2 * n + near[:, ::-1]
-    sides = _strip(2 * n + np.arange(n), n + np.arange(n))
-    surface = _strip(3 * n + np.array([2, 3]), 3 * n + np.arange(2))
-    return Mesh(vertices, np.concatenate([near, far, sides, surface]))
-
-
-def _strip(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Return the faces between two lines with equal numbers of vertices."""
-    first = np.stack([one[:-1], one[1:], other[1:]], 1)
-    rest = np.stack([one[:-1], other[1:], other[:-1]], 1)
-    return np.concatenate([first, rest])
