@@ -23,9 +23,10 @@ def film(path: pathlib.Path) -> None:
     model.vis.headlight.ambient[:] = 0.45
     model.vis.headlight.diffuse[:] = 0.35
     data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)  # The first picture is drawn before the first step.
     camera = mujoco.MjvCamera()
-    camera.lookat[:] = [example["CARRY"] / 2, 0, 0.115]
-    camera.distance = 0.62
+    camera.lookat[:] = [example["CARRY"] / 2, 0, 0.15]
+    camera.distance = 0.78
     camera.azimuth = 52
     camera.elevation = -14
     font = ImageFont.load_default(20)
