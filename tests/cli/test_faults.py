@@ -29,7 +29,7 @@ def little_disk() -> None:
 
 
 def test_a_full_disk_leaves_the_old_file(tmp_path: pathlib.Path) -> None:
-    """Once before with room enough, for Numba writes caches the first time.
+    """The first run has room enough: in it Numba writes its caches.
 
     No bytecode is written: cut off in the checkout, it would end every later run (Python 3.11.2
     does not notice).

@@ -374,7 +374,8 @@ def error_of_a_fall(scene: Scene, phi0: float, phi: float, time: float) -> float
     """By how much phi [rad] is off at a time [s] in the fall from rest at phi0, before the next
     turning point.
 
-    The time by quadrature at the very doubles of the scene, for an incline that is not negative.
+    The time by quadrature at the very doubles of the scene, for a sliding load,
+    or an incline that is not negative.
     The integral is over the root of the change of phi, of which the rate is finite at rest, in
     pieces that are doubled from there on.
     """

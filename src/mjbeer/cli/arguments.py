@@ -259,8 +259,6 @@ OPTIONS = {
         ),
     ),
 }
-
-
 """The options of each command; those of a scene come before them."""
 _ROLLS = ("--rolling", "--friction", "--tolerance", "--camera")
 """Options that a can that stands does not have: they are those of a can that rolls."""

@@ -40,6 +40,7 @@ def sweep(given: Namespace) -> None:
         given.tolerance = 1e-6
     maker = functools.partial(make, SCENES[given.scene])
     named = cast("Any", maker)
+    # By this name the sweep's file says what made its scenes.
     named.__module__ = "mjbeer"
     named.__qualname__ = given.scene
     resumed = given.output if given.output.suffix == ".nc" else None

@@ -114,14 +114,14 @@ def plot(trajectory: Trajectory, *names: str, theory: bool = False) -> "tuple[Ax
         require.choice("quantity", name, _LABELS)
     require.choice("theory", theory, (True, False))
     beneath = _exact_motion(trajectory) if theory else None
-    parts = math.inf if trajectory.rolling == "contact" else trajectory.rolls_until()
+    leaves_at = math.inf if trajectory.rolling == "contact" else trajectory.rolls_until()
     # A notebook makes matplotlib interactive with the first figure, which the context would undo at
     # its end.
     figure = plt.figure(figsize=(8, max(3.5, 2.5 * len(names))), layout="constrained")
     with mpl.rc_context(STYLE):
         panels = tuple(figure.subplots(len(names), 1, sharex=True, squeeze=False).flat)
         for axes, name in zip(panels, names, strict=True):
-            _draw_quantity(axes, name, trajectory, beneath, parts)
+            _draw_quantity(axes, name, trajectory, beneath, leaves_at)
         panels[-1].set_xlabel("time [s]")
         if len(panels[0].get_lines()) > 1:
             panels[0].legend()
@@ -136,17 +136,17 @@ def _exact_motion(trajectory: Trajectory) -> Trajectory:
 
 
 def _draw_quantity(
-    axes: "Axes", name: str, trajectory: Trajectory, beneath: Trajectory | None, parts: float
+    axes: "Axes", name: str, trajectory: Trajectory, beneath: Trajectory | None, leaves_at: float
 ) -> None:
-    """Draw a quantity of a motion, dotted from when it `parts` from the incline [s]."""
+    """Draw a quantity of a motion, dotted from when the can leaves the incline, `leaves_at` [s]."""
     from mjbeer.output.plots import SIMULATED, THEORY, UNPHYSICAL
 
     if beneath is not None:
         axes.plot(beneath.time, _values(beneath, name), label="exact theory", **THEORY)
     time = trajectory.time
     values = _values(trajectory, name)
-    rolls = time <= parts
-    pulled = time >= parts
+    rolls = time <= leaves_at
+    pulled = time >= leaves_at
     source = "exact theory" if trajectory.rolling == "exact" else "MuJoCo"
     axes.plot(time[rolls], values[rolls], label=source, **SIMULATED)
     if pulled.any():

@@ -1,8 +1,4 @@
-"""K.
-
-T. McDonald's paper: equations and statements as claims that are measured, its scenarios as plots
-and films.
-"""
+"""McDonald's paper: its statements as measured claims, its scenarios as plots and films."""
 
 from typing import TYPE_CHECKING
 

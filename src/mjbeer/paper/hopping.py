@@ -168,7 +168,7 @@ CLAIMS = (
         "sec. A.4",
         "in practice it skids first: at mu = 0.8 from 94.2 degrees on, by theory",
         Witness(CONTACT, _skids),
-        Bound(5e-3, "what counts as skidding, and the push that starts it"),
+        Bound(5e-3, "what counts as skidding, and the start 0.05 rad beside the top"),
         residual="angle - theory",
         quote="In actual practice the hoop skids first.",
     ),

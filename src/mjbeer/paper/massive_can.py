@@ -80,7 +80,7 @@ def _bob(ratio: float, heavy: bool = False) -> Observation:
     return oscillate(scene, scene.equilibrium() + amplitude, 120 / scene.frequency())
 
 
-_FULL = _rests(sliding(can=Can.sheet_metal()))
+_HALF_FULL = _rests(sliding(can=Can.sheet_metal()))
 _NEARLY_EMPTY = _rests(sliding(fill=0.01, can=Can.sheet_metal(thickness=1e-3)))
 _HOOP = _rests(sliding(fill=0.01, can=Can.hoop(mass=0.6)))
 _LEFT_49 = (
@@ -218,7 +218,7 @@ CLAIMS = (
     Claim(
         "footnote 4",
         "acceleration of a can whose beer does not swing",
-        _FULL,
+        _HALF_FULL,
         HELD,
         residual=f"u_ddot - {_STEADY.format('rolling')}",
         quote="the acceleration of the center of the can would be constant, with value "
@@ -230,7 +230,7 @@ CLAIMS = (
         _HOOP,
         Bound(1e-7, DRIFT),
         residual=f"u_ddot - {_STEADY.format('2*can_mass')}",
-        limit=Limit(4.2e-3, _FULL.observe),
+        limit=Limit(4.2e-3, _HALF_FULL.observe),
         quote="≈ g sin α(m + m_can)/(m + 2m_can)",
     ),
     Claim(
@@ -246,7 +246,7 @@ CLAIMS = (
     Claim(
         "sec. 3.1",
         "tilt of the beer that does not swing, which the paper leaves open",
-        _FULL,
+        _HALF_FULL,
         HELD,
         residual=f"tan(phi) - ({_STEADY.format('rolling')} - g*sin(alpha))/(g*cos(alpha))",
         quote="small oscillations of the “beer” about an equilibrium",

@@ -181,9 +181,9 @@ def draw_roll_down(panels: Sequence[Axes]) -> None:
     times = np.linspace(0, 1, 1001)
     run = simulate(frozen(), times[-1], math.pi, integrator="DOP853", times=times)
     scene = run.scene
-    parts = exact(scene, times, math.pi).rolls_until()
-    rolls = times <= parts
-    pulled = times >= parts
+    leaves_at = exact(scene, times, math.pi).rolls_until()
+    rolls = times <= leaves_at
+    pulled = times >= leaves_at
     angle, normal = panels
     even = scene.acceleration() / scene.can.radius * times**2 / 2
     angle.plot(
@@ -200,10 +200,10 @@ def draw_roll_down(panels: Sequence[Axes]) -> None:
     for axes, values in ((angle, np.degrees(run.phi - math.pi)), (normal, weights)):
         axes.plot(times[rolls], values[rolls], label="MuJoCo, can that rolls", **SIMULATED)
         axes.plot(times[pulled], values[pulled], label="if the incline could pull it", **UNPHYSICAL)
-        axes.axvline(parts, **REFERENCE)
+        axes.axvline(leaves_at, **REFERENCE)
         axes.set_xlim(0, times[-1])
     normal.axhline(0, **REFERENCE)
-    note(normal, f"no push at {parts:.3f} s", (parts, 7), (-6, 0), ha="right")
+    note(normal, f"no push at {leaves_at:.3f} s", (leaves_at, 7), (-6, 0), ha="right")
     angle.set(ylabel="φ − 180° [°]", title="How far the can has turned")
     normal.set(
         xlabel=_TIME,
@@ -218,10 +218,10 @@ def draw_slip_and_hop(panels: Sequence[Axes]) -> None:
     contact = LIFT_OFF()
     times = np.linspace(0, 1, 1001)
     rolling = exact(contact.scene, times, math.pi)
-    parts = rolling.rolls_until()
+    leaves_at = rolling.rolls_until()
     friction, moved = panels
     needed = rolling.forces.needed_friction
-    needed = np.where((needed < 2.5) & (times < parts), needed, np.nan)
+    needed = np.where((needed < 2.5) & (times < leaves_at), needed, np.nan)
     friction.plot(times, needed, label="needed to roll, exact theory", color="black")
     friction.axhline(FRICTION, **REFERENCE)
     note(friction, f"all that there is: μ = {FRICTION:g}", (0, FRICTION), (6, 8))
@@ -232,9 +232,9 @@ def draw_slip_and_hop(panels: Sequence[Axes]) -> None:
         contact.time, 1e3 * contact.lift, color=COLOURS[0], label="height above the incline, MuJoCo"
     )
     for axes in panels:
-        axes.axvline(parts, **REFERENCE)
+        axes.axvline(leaves_at, **REFERENCE)
         axes.set_xlim(0, times[-1])
-    note(moved, "from here on rolling\nwould need a pull", (parts, 5), (-6, 0), ha="right")
+    note(moved, "from here on rolling\nwould need a pull", (leaves_at, 5), (-6, 0), ha="right")
     friction.set(
         ylabel="friction / normal force", title="Friction that rolling needs", ylim=(0, 2.2)
     )
