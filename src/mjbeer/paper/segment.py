@@ -42,6 +42,8 @@ integrals."""
 class _Segment(NamedTuple):
     """Beer in cross-section, for one fill or for several, as arrays."""
 
+    fill: Any
+    """h/2a."""
     beta: Any
     area: Any
     b: Any
@@ -72,7 +74,7 @@ def _segment(fill: float) -> _Segment:
     centroid = float(strip @ depth) / area
     inertia = float(strip @ (across**2 / 3 + (depth - centroid) ** 2)) / area
     mass = BEER * LENGTH * RADIUS**2 * area
-    return _Segment(beta, area, 1 - centroid, inertia, mass)
+    return _Segment(fill, beta, area, 1 - centroid, inertia, mass)
 
 
 @cache
@@ -156,9 +158,7 @@ CLAIMS = (
         "h/a",
         Witness("chord of a circle", _FILLED.observe),
         _CLOSED,
-        # From the axis to the chord, by half its length, and that by the angle 2 beta that it
-        # subtends.
-        residual="-1 + where(beta < pi/2, 1, -1)*sqrt(1 - sin(beta)**2) + (1 - cos(beta))",
+        residual="2*fill - (1 - cos(beta))",
     ),
     Claim(
         "(34)",
