@@ -30,7 +30,6 @@ def accelerations(phi: float, rate: float, push: float) -> np.ndarray:
     """
     sin = math.sin(phi)
     cos = math.cos(phi)
-    # Fmt: skip.
     matrix = np.array(
         [
             [HOOP + WEIGHT, -WEIGHT * cos, push],

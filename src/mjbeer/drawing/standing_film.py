@@ -100,8 +100,8 @@ class StandingFilm(Film):
         chart = Chart("rise at the right wall [R]", lines, least=2 * QUANTITATIVE)
         strip = ChartStrip([chart], width, below)
         title = f"A can of {can.name} that stands"
-        omega = f"{can.frequencies(1)[0] / (2 * math.pi):.2f} Hz"
-        words = f"{100 * can.fill:.3g} % full; linear theory says {omega}"
+        frequency = f"{can.frequencies(1)[0] / (2 * math.pi):.2f} Hz"
+        words = f"{100 * can.fill:.3g} % full; linear theory says {frequency}"
         data = mujoco.MjData(model)
         with contextlib.closing(_Camera(can, model, (width, height - top - below))) as camera:
             for time in times:

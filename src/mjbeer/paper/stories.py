@@ -158,9 +158,10 @@ STORIES = (
         "roll-down",
         "Frozen beer let go on top rolls down in jerks",
         f"{in_words(frozen())}; let go at φ = 180°",
-        "As in the figure of A.3, where b is a/3: the same can, let go with the beer on top. It "
-        "rolls down in jerks, a little faster than a solid cylinder. From 0.834 s on the incline "
-        "would have to pull the can for it to keep rolling. What comes after that is dotted.",
+        "A half-full can, let go with its frozen beer on top: as in the figure of A.3, whose load "
+        "has b = a/3. It rolls down in jerks, a little faster than a solid cylinder. From 0.834 s "
+        "on the incline would have to pull the can for it to keep rolling. What comes after that "
+        "is dotted.",
         PlotSize(2, 1, 6, 6.2),
         story_plots.draw_roll_down,
     ),
