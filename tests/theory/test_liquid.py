@@ -10,9 +10,9 @@ import pytest
 from scipy.integrate import solve_bvp
 from scipy.optimize import brentq
 
-from mjbeer import Can, LiquidWarning, Load, exact, liquid, sliding
+from mjbeer import Can, LiquidWarning, Load, Scene, exact, liquid, sliding
 from mjbeer.theory import slosh
-from mjbeer.theory.equations import slip_rate_of
+from mjbeer.theory.equations import accelerations, resting_tilt, slip_rate_of
 from mjbeer.theory.liquid import ENDS, FILM_LOAD, LIQUIDS, WALL, liquid_in, lump_warning
 from mjbeer.theory.segment import segment
 from tests.support.scenes import METAL
@@ -301,3 +301,42 @@ def test_a_film_is_a_reason_once_the_wall_has_carried_it_up(
     if share:
         assert f"{100 * carried:.0f} %" == share
         assert f"the film on the wall can hold {share} of it" in run.warnings[0]
+
+
+def test_the_rest_of_the_surface_is_that_of_the_present_rates() -> None:
+    """Where the load does not accelerate: at the terminal speed, and without friction."""
+    scene = liquid("water", math.radians(1), can=METAL, drag=0.01)
+    speed = scene.terminal_speed()
+    rest = resting_tilt(scene, np.zeros(1), np.array([speed]))
+    assert rest == pytest.approx(scene.terminal_tilt(), rel=1e-12)
+    free = Scene(METAL, Load.liquid(METAL), math.radians(5))
+    assert resting_tilt(free, np.zeros(1), np.ones(1)) == pytest.approx(free.equilibrium())
+    for u_dot in (0.0, 0.1, 0.3):
+        rest = float(resting_tilt(scene, np.zeros(1), np.array([u_dot]))[0])
+        assert abs(accelerations(scene, rest, 0.0, u_dot).phi_ddot) < 1e-10
+
+
+@pytest.mark.parametrize("turns", [0, 1])
+def test_a_surface_that_tilts_beyond_linear_theory_is_told(turns: int) -> None:
+    """Damped or not, and also after a whole turn; 0.2 rad is allowed."""
+    free = Scene(METAL, Load.liquid(METAL), 0.0)
+    times = np.linspace(0, 0.3, 301)
+    start = math.tau * turns
+    for scene in (free, liquid("water", 0.0, can=METAL)):
+        assert exact(scene, times, start + 0.199).liquid_warnings == ()
+        run = exact(scene, times, start + 0.3)
+        assert run.record.largest_tilt == pytest.approx(0.3, rel=1e-6)
+        assert run.liquid_warnings == (
+            "the surface tilts by up to 0.3 rad against its rest: "
+            "linear theory of slosh holds up to 0.2 rad",
+        )
+        assert not run.trusted
+
+
+def test_a_load_that_loops_is_no_liquid() -> None:
+    damped = Scene(METAL, Load.liquid(METAL), 0.0, damping=1e-7)
+    run = exact(damped, np.linspace(0, 0.5, 501), 0.0, 150.0)
+    assert run.phi[-1] > math.tau
+    assert run.liquid_warnings == (
+        "the load stands for a liquid that sloshes, and turns round, as no liquid does",
+    )

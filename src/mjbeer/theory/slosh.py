@@ -1,9 +1,9 @@
 """Slosh: how a liquid with a free surface swings in a lying can, in the exact linear theory.
 
-The liquid has no viscosity, but for its damping, and its surface tilts by small angles. In a cross-section, x is level,
-y points upwards, and the surface reaches from x = -c to x = c. The can has the radius a and the
-length l, the liquid the density rho and the mass m; b is the distance of its centre of mass from
-the axis. The modes in which the surface is even in x move no mass sideways, and are left out.
+The liquid has no viscosity, but for its damping, and its surface tilts by small angles. In a
+cross-section, x is level, y points upwards, and the surface reaches from x = -c to x = c. The can
+has the radius a and the length l, the liquid the density rho and the mass m; b is the distance of
+its centre of mass from the axis. The modes in which the surface is even in x move no mass sideways, and are left out.
 
 **The surface.** The wall is a circle, so that the pressure on any part of it acts along a line
 through the axis. It does not matter how the can turns, only how far its axis has moved: by u. In
@@ -136,6 +136,10 @@ FILLS = (0.01, 0.99)
 
 There the liquid, or the air, ends at the wall in a wedge of 0.2 rad, and linear theory is for tilts
 that are small against this angle."""
+LARGEST_TILT = 0.2
+"""Largest tilt of the surface against its rest [rad] for which linear theory is quantitative.
+
+A wave on deep water with such a slope is 2 % faster than a low one (Stokes, 1847)."""
 POLYNOMIALS = 48
 """Number of polynomials, and of modes.
 
