@@ -72,10 +72,7 @@ def render(
       RenderingError: if OpenGL or ffmpeg does not work; the message says what to do.
       OutputError: if the file cannot be written.
     """
-    target = None if path is None else require.path(path)
-    if target and target.suffix.lower() != ".mp4":
-        name = require.format_value(str(path))
-        raise ParameterError(f"the file's name must end in .mp4, got {name}")
+    target = None if path is None else file_path(path)
     require.choice("progress", progress, (True, False))
     console = terminal.STDERR if progress else None
     require.instance("trajectory", trajectory, Trajectory)
@@ -89,8 +86,25 @@ def render(
         ):
             mediapy.show_video(pictures, fps=fps, autoplay=False)
         return
-    with terminal.progress_bar(console, len(plan.times(fps))) as begin:
-        write(plan, target, width, height, fps, begin)
+    with terminal.progress_bar(console, len(plan.times(fps))) as show_progress:
+        write(plan, target, width, height, fps, show_progress)
+
+
+def file_path(path: str | os.PathLike[str]) -> pathlib.Path:
+    """Return the path of a video.
+
+    Raises:
+      ParameterError: if it is no path, or does not end in .mp4.
+    """
+    target = require.path(path)
+    if target.suffix.lower() != ".mp4":
+        name = require.format_value(str(path))
+        raise ParameterError(f"the file's name must end in .mp4, got {name}")
+    return target
+
+
+def _show_nothing(_: str) -> None:
+    """Stand for a progress bar that is not there."""
 
 
 def write(
@@ -99,9 +113,9 @@ def write(
     width: int,
     height: int,
     fps: float,
-    begin: Callable[[str], Any] = str,
+    show_progress: Callable[[str], None] = _show_nothing,
 ) -> None:
-    """Write a film as `render` does; `begin` gets the words of a progress bar."""
+    """Write a film as `render` does; `show_progress` is told of each picture as it is drawn."""
     with (
         files.atomic_write(path) as temporary,
         contextlib.closing(_pictures(plan, width, height, fps)) as pictures,
@@ -118,7 +132,7 @@ def write(
         try:
             try:
                 for picture in pictures:
-                    begin(f"drawing {path.name}")
+                    show_progress(f"drawing {path.name}")
                     writer.add_image(picture)
             except BrokenPipeError:
                 writer.close()  # which now raises what ffmpeg said
@@ -170,9 +184,8 @@ def _mediapy() -> Generator[Any]:
         yield mediapy
     except (OSError, RuntimeError) as error:
         cause = error.__context__
-        if not isinstance(
-            cause, OSError | RuntimeError | None
-        ):  # drawing failed, or Ctrl-C ended both
+        if cause is not None and not isinstance(cause, OSError | RuntimeError):
+            # Not ffmpeg failed first but the drawing, or Ctrl-C ended both.
             raise cause from None
         # Without mediapy's words, which come before those of ffmpeg.
         messages = re.sub("^Error writing '.*?': ", "", str(error)).strip()
