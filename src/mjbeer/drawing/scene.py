@@ -7,6 +7,7 @@ whatever the scene's is: none is too small or too large for the single precision
 import dataclasses
 import math
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
@@ -16,7 +17,7 @@ from scipy.interpolate import CubicHermiteSpline
 from mjbeer.drawing import opengl
 from mjbeer.drawing.camera import View, circle, in_space, on_incline, scale
 from mjbeer.drawing.sheet import Colour, Sheet
-from mjbeer.exceptions import RenderingError
+from mjbeer.exceptions import ParameterError, RenderingError
 from mjbeer.model import looks
 from mjbeer.model.build import rolling_spec
 from mjbeer.model.joints import joint_addresses
@@ -26,15 +27,18 @@ from mjbeer.theory.can import RADIUS
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
 
-_UNSEEN = 5
-"""The group of geoms that are not drawn. Each can is in one of the groups before it."""
+_UNSEEN = mujoco.mjNGROUP - 1
+"""The group of geoms that are not drawn. Each can has one of the groups before it to itself."""
 _STRIPE = math.pi / 2 * RADIUS
-"""Length of a stripe of the board [m]. A pale one begins at x = 0, as in the templates."""
+"""Length of a stripe of the board [m]. Stripe 0, a pale one, begins at x = 0, as in the
+templates."""
 _PALE = np.array([0.94, 0.84, 0.69])
 _DARK = np.array([0.84, 0.71, 0.54])
 """Colours of the stripes, as in mjcf/assets.xml."""
 _SQUARE = 0.1
 """Distance of the lines on the wall [m]; x = 0 is half-way between two of them."""
+_LINE = _SQUARE / 64
+"""Width of these lines [m]: two of the 128 pixels of a square in the templates' texture."""
 _WALL = np.array([0.985, 0.99, 1.0])
 _GRID = np.array([0.84, 0.87, 0.92])
 """Colours of the wall and of its lines, as in mjcf/scene.xml."""
@@ -42,17 +46,18 @@ _PAINT = np.array([0.15, 0.17, 0.2])
 """Colour of lines across the board, such as the start of a race."""
 _STROKE = 0.003
 """Half the width of these lines [m]."""
+_PALER = 0.35
+"""How far the colour of foam is on the way from its load's to white."""
 _NEAR = np.array([0.0, -1.0, 0.0])
-"""Unit vector towards the reader."""
+"""Unit vector towards the viewer."""
 
 
-def coordinates(trajectory: Trajectory, times: np.ndarray) -> np.ndarray:
+def coordinates(motion: Trajectory, times: np.ndarray) -> np.ndarray:
     """Return u [m], phi [rad], roll [rad] and lift [m] at some times [s], shape (times, 4).
 
-    Between samples each is the cubic with their values and rates, whose error falls as the
-    interval's fourth power.
+    Between two samples each is the cubic that has their values and rates; its error falls with the
+    fourth power of the interval.
     """
-    motion = trajectory
     samples = np.stack([motion.u, motion.phi, motion.roll, motion.lift], axis=1)
     if len(samples) == 1:
         return np.repeat(samples, len(times), axis=0)
@@ -72,7 +77,12 @@ class Display:
         """Make the display of cans on one incline, `apart` [m] from each other, the nearest first.
 
         At each distance [m] down the incline in `lines` a line crosses the board.
+
+        Raises:
+          ParameterError: if there are more than five cans: each must be drawn by itself.
         """
+        if len(scenes) > _UNSEEN:
+            raise ParameterError(f"at most {_UNSEEN} cans can be drawn together, got {len(scenes)}")
         self.scenes = scenes
         self.lanes = [lane * apart for lane in range(len(scenes))]
         self._lines = lines
@@ -92,15 +102,16 @@ class Display:
     def paint(
         self, labels: Sequence[Sequence[float]], loads: Sequence[Sequence[float] | None]
     ) -> None:
-        """Give each can's label a colour, and its load too unless that is None.
+        """Give the label of each can a colour, and each load, unless its colour is None.
 
-        What is on a load that has a colour is paler.
+        The foam on a load gets a paler shade of its colour.
         """
         for number, (label, load) in enumerate(zip(labels, loads, strict=True)):
             self.model.mat(_prefix(number) + "label").rgba[:3] = label
             if load is not None:
-                self._paint_geom(_prefix(number) + "load", np.array(load))
-                self._paint_geom(_prefix(number) + "foam", np.array(load) * (1 - 0.35) + 0.35)
+                colour = np.array(load)
+                self._paint_geom(_prefix(number) + "load", colour)
+                self._paint_geom(_prefix(number) + "foam", colour + _PALER * (1 - colour))
 
     def _paint_geom(self, name: str, colour: np.ndarray) -> None:
         """Give the material of a geom a colour, if there is this geom."""
@@ -144,25 +155,25 @@ class Display:
         return np.stack([np.insert(ring, 1, y, axis=1) for y in self.ends(number)])
 
     def draw_empty(self, sheet: Sheet, view: View) -> None:
-        """Draw wall and board, flat, ten times as fast as OpenGL.
+        """Draw wall and board as flat areas, which takes a tenth of the time that OpenGL takes.
 
-        The rows above and below the view are not kept.
+        What is on the sheet above and below the view may be drawn over.
         """
         self._draw_wall(sheet, view)
         self._draw_board(sheet, view)
 
     def _draw_wall(self, sheet: Sheet, view: View) -> None:
+        """Draw the wall behind the board, and a grid of lines on it."""
         y = float(self.model.geom("wall").pos[1])
         corners = view.corners(y)
         left, low = corners.min(axis=0)
         right, high = corners.max(axis=0)
-        upright = [[(x, low), (x, high)] for x in _grid(left, right)]
-        level = [[(left, z), (right, z)] for z in _grid(low, high)]
-        lines = np.reshape(upright + level, (-1, 2, 2))
-        sheet.area(view.pixel(np.insert(corners, 1, y, axis=-1)), self.lit(_WALL, _NEAR, view))
-        places = view.pixel(np.insert(lines, 1, y, axis=-1))
-        width = _SQUARE / 64 * view.scale(np.array([left, y, low]))
-        sheet.line(_separated(places), width, self.lit(_GRID, _NEAR, view))
+        upright = [[(x, y, low), (x, y, high)] for x in _grid(left, right)]
+        level = [[(left, y, z), (right, y, z)] for z in _grid(low, high)]
+        grid = _separated(np.reshape(upright + level, (-1, 2, 3)))
+        width = _LINE * view.scale(np.array([left, y, low]))
+        sheet.area(view.pixel(np.insert(corners, 1, y, axis=1)), self.lit(_WALL, _NEAR, view))
+        sheet.line(view.pixel(grid), width, self.lit(_GRID, _NEAR, view))
 
     def _draw_board(self, sheet: Sheet, view: View) -> None:
         """Draw the upper side of the board and its front: every eye sees these two."""
@@ -172,37 +183,32 @@ class Display:
         under = board.pos[2] - board.size[2]
         over = board.pos[2] + board.size[2]
         scene = self.scenes[0]
+        edge = in_space(scene, 0.0, over, front)
+        up = in_space(scene, 0.0, 1.0, 0.0)
+        upper_side = _Face(scene, edge, in_space(scene, 0.0, over, back), up)
+        front_side = _Face(scene, edge, in_space(scene, 0.0, under, front), _NEAR)
+
         seen = np.concatenate([view.corners(front), view.corners(back)])
         along = seen @ on_incline(scene, 1.0, 0.0)
-        stripes = _STRIPE * np.arange(along.min() // _STRIPE - 1, along.max() // _STRIPE + 2)
-        dark = stripes[np.round(stripes / _STRIPE) % 2 == 1]
+        numbers = np.arange(along.min() // _STRIPE - 1, along.max() // _STRIPE + 1)
+        self._draw_stripes(sheet, view, upper_side, numbers)
+        if len(self._lines):
+            painted = upper_side.bands(np.array(self._lines) - _STROKE, 2 * _STROKE)
+            sheet.area(view.pixel(painted), self.lit(_PAINT, up, view))
+        self._draw_stripes(sheet, view, front_side, numbers)
 
-        def bands(begin: np.ndarray, length: float, y: float, z: float) -> np.ndarray:
-            """Return the places of bands that begin somewhere down the incline.
-
-            They run from the upper front edge of the board to the edge at `y` and `z`.
-            """
-            end = begin + length
-            corners = [
-                in_space(scene, begin, over, front),
-                in_space(scene, end, over, front),
-                in_space(scene, end, z, y),
-                in_space(scene, begin, z, y),
-            ]
-            return _separated(view.pixel(np.stack(corners, axis=1)))
-
-        up = in_space(scene, 0.0, 1.0, 0.0)
-        whole = float(np.ptp(stripes))
-        lines = np.array(self._lines) - _STROKE
-        sheet.area(bands(stripes[:1], whole, back, over), self.lit(_PALE, up, view))
-        sheet.area(bands(dark, _STRIPE, back, over), self.lit(_DARK, up, view))
-        if len(lines):
-            sheet.area(bands(lines, 2 * _STROKE, back, over), self.lit(_PAINT, up, view))
-        sheet.area(bands(stripes[:1], whole, front, under), self.lit(_PALE, _NEAR, view))
-        sheet.area(bands(dark, _STRIPE, front, under), self.lit(_DARK, _NEAR, view))
+    def _draw_stripes(self, sheet: Sheet, view: View, face: "_Face", numbers: np.ndarray) -> None:
+        """Draw the stripes of a face that have some successive `numbers`; the odd ones are dark."""
+        ground = face.bands(_STRIPE * numbers[:1], _STRIPE * len(numbers))
+        dark = face.bands(_STRIPE * numbers[numbers % 2 == 1], _STRIPE)
+        sheet.area(view.pixel(ground), self.lit(_PALE, face.normal, view))
+        sheet.area(view.pixel(dark), self.lit(_DARK, face.normal, view))
 
     def shade(self, sheet: Sheet, view: View, outline: np.ndarray) -> None:
-        """Draw the shadow on the board of a can with an outline, as `Display.outline` gives it."""
+        """Draw the shadow on the board of a can with an `outline`, as `Display.outline` returns it.
+
+        It is the quadrilateral between the ends of the shadows of the can's near and far end.
+        """
         scene = self.scenes[0]
         along = in_space(scene, 1.0, 0.0, 0.0)
         up = in_space(scene, 0.0, 1.0, 0.0)
@@ -233,6 +239,28 @@ class Display:
         return red, green, blue
 
 
+class _Face(NamedTuple):
+    """A face of the board between two edges, which both run down the incline without end."""
+
+    scene: Scene
+    one: np.ndarray
+    """The place on one edge that is not down the incline at all [m], shape (3,)."""
+    other: np.ndarray
+    """The place on the other edge, likewise."""
+    normal: np.ndarray
+    """Unit vector out of the board."""
+
+    def bands(self, begin: np.ndarray, length: float) -> np.ndarray:
+        """Return bands across the face as one path with gaps, shape (points, 3).
+
+        They `begin` at some distances down the incline and have a `length` along it [m].
+        """
+        first = in_space(self.scene, begin, 0.0, 0.0)
+        last = in_space(self.scene, begin + length, 0.0, 0.0)
+        corners = [first + self.one, last + self.one, last + self.other, first + self.other]
+        return _separated(np.stack(corners, axis=1))
+
+
 def _drawn_spec(scene: Scene, group: int) -> mujoco.MjSpec:
     """Return what is drawn of a scene, with the geoms of its can in a group."""
     resized = _resize(scene)
@@ -243,7 +271,7 @@ def _drawn_spec(scene: Scene, group: int) -> mujoco.MjSpec:
         spec.delete(pair)
     for geom in spec.geoms:
         of_can = geom.group == looks.VISUAL_GROUP and geom.name not in ("board", "wall")
-        geom.group = group % _UNSEEN if of_can else _UNSEEN
+        geom.group = group if of_can else _UNSEEN
     return spec
 
 
@@ -265,7 +293,7 @@ def _resize(scene: Scene) -> Scene:
 
 
 def _prefix(number: int) -> str:
-    """Return with what the names begin that belong to a lane."""
+    """Return what the names in a lane begin with."""
     return f"{number}-" if number else ""
 
 
@@ -276,30 +304,28 @@ def _grid(low: float, high: float) -> np.ndarray:
 
 
 def _separated(shapes: np.ndarray) -> np.ndarray:
-    """Return lines or polygons of shape (n, k, 2) as one path, with gaps (NaN)."""
+    """Return n lines or polygons of k points, shape (n, k, d), as one path with gaps (NaN)."""
     gap = np.full_like(shapes[:, :1], np.nan)
-    return np.concatenate([shapes, gap], axis=1).reshape(-1, 2)
+    return np.concatenate([shapes, gap], axis=1).reshape(-1, shapes.shape[2])
 
 
 class Painter:
     """Draws the cans of a display by OpenGL, and lays them on wall and board.
 
-    It holds graphics memory until closed.
-
-    It replaces mujoco.Renderer, which can only use the OpenGL that MUJOCO_GL named when MuJoCo was
-    imported.
+    It holds graphics memory until it is closed. It stands in for `mujoco.Renderer`, which can only
+    use the OpenGL that MUJOCO_GL named when MuJoCo was imported.
     """
 
     def __init__(self, display: Display, pixels: tuple[int, int], still: bool = True) -> None:
-        """Prepare to draw pictures of at most some `pixels`, all with one view if `still`."""
+        """Prepare to draw pictures of at most so many `pixels`, all with one view if `still`."""
         self._display = display
         self._still = still
         self._empty: np.ndarray | None = None
         model = display.model
         model.vis.global_.offwidth = 2 * pixels[0]
         model.vis.global_.offheight = 2 * pixels[1]
-        # Pictures are drawn with twice as many pixels each way, which takes less time than samples
-        # and shows more.
+        # Pictures are drawn with twice as many pixels each way and then reduced, which takes less
+        # time than multisampling and shows more.
         model.vis.quality.offsamples = 0
         model.vis.quality.shadowsize = 0  # no light casts one
         self._option = mujoco.MjvOption()
@@ -342,7 +368,7 @@ class Painter:
         from OpenGL import GL
 
         self._option.geomgroup[:] = 0
-        self._option.geomgroup[number % _UNSEEN] = 1
+        self._option.geomgroup[number] = 1
         mujoco.mjv_updateScene(
             self._display.model,
             self._display.data,
@@ -363,13 +389,13 @@ class Painter:
         fine = np.empty((height, width, 4), np.uint8)
         GL.glBindFramebuffer(GL.GL_READ_FRAMEBUFFER, self._context.offFBO)
         GL.glReadPixels(0, 0, width, height, GL.GL_RGBA, GL.GL_UNSIGNED_BYTE, fine)
-        # As red, green, blue and padding, for Pillow divides colours by what it takes for their
+        # Pillow is told that the fourth channel is padding: it would divide the colours by an
         # opacity.
         whole = Image.frombuffer("RGBX", (width, height), fine, "raw", "RGBX", 0, -1)
         return np.asarray(whole.reduce(2))
 
     def _place_eye(self, view: View) -> None:
-        """Let the scene be seen in a view, by light from its eye."""
+        """Put the two eyes and the headlight of MuJoCo's scene where the eye of the view is."""
         # Nothing is drawn nearer to the eye than this, or beyond `frustum_far`.
         near = 0.2 * view.distance
         for eye in self._scene.camera:  # two of them, for stereo; MuJoCo draws their mean
