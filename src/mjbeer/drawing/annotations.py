@@ -17,10 +17,12 @@ from mjbeer.theory.can import RADIUS
 from mjbeer.theory.trajectory import Trajectory
 
 LONGEST = 1.6
-"""Longest arrow of a force, in radii; that of the weight is 1. Only the blow of a landing would
-be longer."""
-_FAINT = 0.05  # shortest arrow that is drawn, in radii
-_CLEAR = 0.4  # least distance of a force's letter from the can's foot, in radii
+"""Length of the longest arrow of a force, in radii; that of the weight is 1. Only the blow of a
+landing would be longer."""
+_SHORTEST = 0.05
+"""Length of the shortest arrow that is drawn, in radii."""
+_LETTER_DISTANCE = 0.4
+"""Least distance of a force's letter from where the can touches the incline, in radii."""
 
 _RIM = (0.79, 0.12, 0.16)
 _CENTRE = (0.42, 0.21, 0.0)
@@ -35,9 +37,10 @@ class Legend(NamedTuple):
     """What a mark means."""
 
     sign: str
+    """A sign that looks like the mark."""
     colour: Colour
     meaning: str
-    """In words, with a place {} for what rolls."""
+    """What it means in words, with a place {} for what rolls."""
 
 
 LEGENDS: dict[Mark, tuple[Legend, ...]] = {
@@ -70,13 +73,13 @@ class Position(NamedTuple):
 
 
 class Annotations:
-    """Marks at the can of a trajectory, to be drawn over the pictures at some times.
+    """The marks at the can of a trajectory, drawn on top of its pictures.
 
     Places along the incline and above it, and sizes, are in radii.
     """
 
     def __init__(self, trajectory: Trajectory, style: FilmStyle, plane: float) -> None:
-        """Prepare to draw on the `plane` y of the can's near end [m]."""
+        """Prepare to draw in the plane y = `plane` of the can's near end [m]."""
         self._motion = trajectory
         self._measured = style.measured
         self._plane = plane
@@ -84,7 +87,7 @@ class Annotations:
         self._path_times = np.linspace(trajectory.time[0], trajectory.time[-1], 2000)
         self._path = coordinates(trajectory, self._path_times)
         self._forces = MeanForces(np.zeros(0), np.zeros(0))
-        """The lengths of the arrows of forces at the samples."""
+        """The lengths of the arrows of forces at the samples, in radii."""
         if "normal" in style.marks or "friction" in style.marks:
             self._forces = _arrow_lengths(mean_forces(trajectory))
         draw: dict[Mark, Callable[[_Pen, Position], None]] = {
@@ -127,23 +130,24 @@ class Annotations:
 
     def _draw_normal(self, pen: "_Pen", now: Position) -> None:
         normal = self._arrow(self._forces.normal, now)
-        if normal > _FAINT:
+        if normal > _SHORTEST:
             length = min(normal, LONGEST)
             foot = self._foot(now)
             pen.arrow(foot - np.array([0, length]), foot, _NORMAL)
-            # The letter stands where friction does not push to.
+            # The letter is at the side of the arrow where there is no arrow of friction.
             aside = 0.36 * self._friction_direction(now)
-            pen.text(foot - np.array([aside, max(length, _CLEAR) + 0.1]), "N", _NORMAL)
+            below = max(length, _LETTER_DISTANCE) + 0.1
+            pen.text(foot - np.array([aside, below]), "N", _NORMAL)
 
     def _draw_friction(self, pen: "_Pen", now: Position) -> None:
         friction = abs(self._arrow(self._forces.friction, now))
-        if friction > _FAINT:
+        if friction > _SHORTEST:
             length = min(friction, LONGEST)
             direction = self._friction_direction(now)
             foot = self._foot(now)
             tail = foot - np.array([0, 0.12])
             pen.arrow(tail, tail + np.array([direction * length, 0]), _FRICTION)
-            letter = np.array([direction * max(length, _CLEAR), -0.54])
+            letter = np.array([direction * max(length, _LETTER_DISTANCE), -0.54])
             pen.text(foot + letter, "F", _FRICTION)
 
     def _arrow(self, force: np.ndarray, now: Position) -> float:
@@ -159,7 +163,7 @@ class Annotations:
         return np.array([self._axis(now)[0], -WALL])
 
     def _draw_phi(self, pen: "_Pen", now: Position) -> None:
-        """Draw phi outside the rim.
+        """Draw phi outside the rim: an arc between two short lines, and the letter beside it.
 
         It is the angle from the incline to the beer's surface, or from below the axle to a bob.
         """
@@ -168,14 +172,15 @@ class Annotations:
         if self._motion.scene.load.fill is None:
             start = -math.pi / 2
         axis = self._axis(now)
-        for direction in (start, start - angle):
-            pen.line(axis + np.array([[1.07], [1.42]]) * _towards(direction), 0.045, INK)
+        ends = np.array([[1.07], [1.42]])
+        pen.line(axis + ends * _towards(start), 0.045, INK)
+        pen.line(axis + ends * _towards(start - angle), 0.045, INK)
         arc = start - np.linspace(0, angle, 32)
         pen.line(axis + 1.26 * _towards(arc), 0.045, INK)
         pen.text(axis + 1.62 * _towards(start - angle / 2), "φ", INK)
 
     def _draw_measured(self, pen: "_Pen", now: Position) -> None:
-        """Draw some sixty of the measured places, and the latest."""
+        """Draw about sixty of the measured places, and the latest."""
         assert self._measured is not None
         step = max(1, len(self._measured) // 60)
         seen = self._measured[self._measured[:, 0] <= now.time]
@@ -186,10 +191,10 @@ class Annotations:
 def _arrow_lengths(forces: MeanForces) -> MeanForces:
     """Return the lengths of the arrows of forces, in radii.
 
-    A weight has the length 1, or less if arrows would often be too long.
+    A weight has the length 1, or less if more than a tenth of the forces were too long then.
     """
-    common = max(np.percentile(np.hypot(*forces), 90), _FAINT)
-    factor = min(1.0, LONGEST / common)
+    large = max(np.percentile(np.hypot(*forces), 90), _SHORTEST)
+    factor = min(1.0, LONGEST / large)
     return MeanForces(factor * forces.normal, factor * forces.friction)
 
 

@@ -21,10 +21,14 @@ from mjbeer.output.plots import COLOURS, STYLE
 from mjbeer.theory.scene import GRAVITY
 from mjbeer.theory.trajectory import Trajectory, exact_motion
 
-_THEORY = "#b4bcc8"  # colour of theory's lines, which are wide and lie below
-_MARKED = "#fff1b8"  # ground of the times at which something happens
-_LETTERS = 1.15  # height of letters, in units
-_INTERVALS = 50  # forces are means over a motion's duration divided by this
+_THEORY = "#b4bcc8"
+"""Colour of theory's lines, which are wide and lie below the others."""
+_MARKED = "#fff1b8"
+"""Ground of the times at which something happens."""
+_LETTERS = 1.15
+"""Height of the letters, in units: tenths of the strip's height."""
+_INTERVALS = 50
+"""A force is a mean over the duration of the motion, divided by this number."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,11 +78,12 @@ def wrapped(angle: np.ndarray | float) -> np.ndarray:
 
 
 def mean_motion(motion: Trajectory, time: np.ndarray) -> np.ndarray:
-    """Return the places [m] at some times [s] of a can that accelerates evenly.
+    """Return where a can that accelerates evenly is [m] at some times [s].
 
-    The motion swings about it. This can starts with the same momentum, and with its load at rest in
-    it where the load has an equilibrium. It has neither damping nor drag, so that the motion falls
-    behind it by what they cost.
+    The motion swings about that of this can. If the load slides, this can starts with the same
+    momentum, but with its load at rest at the equilibrium; if the load is frozen, it starts at the
+    same place with the same speed. It has neither damping nor drag: what these cost is how far the
+    motion falls behind it.
     """
     scene = motion.scene
     u = motion.u[0]
@@ -104,9 +109,9 @@ class MeanForces(NamedTuple):
 def mean_forces(motion: Trajectory) -> MeanForces:
     """Return the mean forces around each sample, also of a can that slips or flies.
 
-    They follow from the change of momentum over a fiftieth of the motion. A can that hardly presses
-    on the ground rises and lands many times a second, and each landing is a blow. Without gravity
-    the unit is the weight on earth.
+    They follow from the change of momentum in a fiftieth of the motion. The forces at an instant
+    would not be readable: a can that hardly presses on the ground rises and lands many times a
+    second, and each landing is a blow. Without gravity the unit is the weight on earth.
     """
     scene = motion.scene
     moment = scene.load.moment
@@ -190,9 +195,10 @@ def _rolls(theory: Trajectory) -> np.ndarray:
 
 
 class ChartStrip:
-    """Charts side by side.
+    """Charts side by side, below the pictures of a film.
 
-    Lines with a colour are drawn up to now. Theory's lines are there from the beginning.
+    Lines that have a colour are drawn up to the time of the picture, with a dot at their end.
+    Theory's lines are there from the beginning.
     """
 
     def __init__(
@@ -202,7 +208,11 @@ class ChartStrip:
         height: int,
         marked: Sequence[tuple[float, float]] = (),
     ) -> None:
-        """Prepare to draw charts in which some spans of time [s] are `marked`."""
+        """Prepare to draw charts of so many pixels, in which some spans of time [s] are `marked`.
+
+        All is drawn twice, at the beginning and at the end of the film. A picture takes what is to
+        the left of its time from the second.
+        """
         self._charts = charts
         self._height = height
         self._unit = height / 10
@@ -225,15 +235,15 @@ class ChartStrip:
                 bottom=3 * letters / height,
                 wspace=6 * letters / (width / len(charts) - 6 * letters),
             )
-            moving = []
+            growing = []
             for panel, chart in zip(panels, charts, strict=True):
                 for first, last in marked:
                     panel.axvspan(first, last, color=_MARKED, linewidth=0)
-                moving += self._draw_panel(panel, chart)
+                growing += self._draw_panel(panel, chart)
             self._add_key(figure, panels[0], width)
             canvas.draw()
             self._beginning = np.array(canvas.buffer_rgba())
-            for line in moving:
+            for line in growing:
                 figure.draw_artist(line)
             self._complete = np.array(canvas.buffer_rgba())
         self._panels: list[tuple[Transform, BboxBase]] = [
@@ -241,7 +251,7 @@ class ChartStrip:
         ]
 
     def _draw_panel(self, panel: Axes, chart: Chart) -> list[Line2D]:
-        """Draw a chart without the lines that are seen up to now only, and return those."""
+        """Draw a chart without the lines that grow with the film, and return these."""
         unit = self._unit
         for line in sorted(chart.lines, key=lambda line: line.colour is not None):
             panel.plot(
@@ -281,7 +291,7 @@ class ChartStrip:
             )
 
     def draw(self, sheet: Sheet, time: float, top: int) -> None:
-        """Draw the strip as it is at a `time` [s], with its upper edge at a row of the sheet."""
+        """Draw the strip as it is at a `time` [s], with its upper edge at the row `top`."""
         shown = self._beginning.copy()
         for transform, extent in self._panels:
             left = int(extent.x0)

@@ -11,16 +11,19 @@ from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
 
 Mark = Literal["ghost", "paths", "normal", "friction", "phi", "measured"]
-"""ghost: a can that accelerates evenly. paths: those of a point on the rim and of the load's
-centre of mass. normal: N. friction: F. phi: the angle of the load. measured: where a filmed axis
-has been so far."""
+"""What can be drawn to explain a motion.
+
+ghost: a can that accelerates evenly. paths: those of a point on the rim and of the load's centre of
+mass. normal: the normal force N. friction: the friction F. phi: the angle of the load. measured:
+where a filmed axis has been so far.
+"""
 
 
 class SceneNames(NamedTuple):
     """What a scene and its parts are called in a film."""
 
     title: str
-    """The title of a film of which nothing else is known."""
+    """The title of a film for which no other is given."""
     body: str
     """What rolls."""
     load: str
@@ -59,7 +62,7 @@ class FilmStyle:
 
     @classmethod
     def usual(cls, trajectory: Trajectory, camera: Camera = "auto") -> Self:
-        """Return the style of a motion of which nothing else is known."""
+        """Return the style of a motion for which no other is given."""
         scene = trajectory.scene
         title = scene_names(scene).title
         if scene.dissipates:
