@@ -231,7 +231,7 @@ def test_the_scenery_is_what_opengl_would_draw(incline: float, above: bool) -> N
     show_only_the_scenery(display)
 
     sheet = Sheet(*view.pixels)
-    display.draw_empty(sheet, view)
+    display.scenery.draw(sheet, view)
     with closing(Painter(display, view.pixels)) as painter:
         by_opengl = painter._draw(view, 0)
 

@@ -26,9 +26,14 @@ NOTE = 3
 """Height of a note, at the top of the scene."""
 _MARGIN = 1.2
 """Distance of texts from the edges of the sheet."""
+_LEGEND_GAPS = (0.5, 1.8)
+"""Gaps behind the sign of a mark, and behind its meaning."""
 _LETTER = 0.65
-"""Width of a letter on a plate; the mean is a little less."""
-_DOUBT = (0.72, 0.05, 0.05)  # colour of a warning
+"""Width of a letter of a warning; the mean is a little less."""
+_WARNING_MARGINS = 4
+"""Width of the picture that a warning leaves free beside its letters."""
+_DOUBT = (0.72, 0.05, 0.05)
+"""Colour of a warning."""
 
 
 class _TextLine(NamedTuple):
@@ -63,11 +68,13 @@ def draw_header(
     body = scene_names(trajectory.scene).body
     row = _LEGEND_ROW * unit
     column = _MARGIN * unit
+    behind_sign, behind_meaning = _LEGEND_GAPS
     for mark in style.marks:
         for sign, colour, meaning in LEGENDS[mark]:
             drawn = sheet.text((column, row), sign, 1.1 * unit, colour, bold=True)
-            words = sheet.text((drawn.right + 0.5 * unit, row), meaning.format(body), unit)
-            column = words.right + 1.8 * unit
+            column = drawn.right + behind_sign * unit
+            words = sheet.text((column, row), meaning.format(body), unit)
+            column = words.right + behind_meaning * unit
 
 
 def draw_title(
@@ -145,7 +152,8 @@ NOTES = {
     ),
     "hesitates": Note("the {load} is uphill: the {body} hesitates", _hesitates),
 }
-"""All notes by name. Where several of a film hold, the one that the film names first is shown."""
+"""All notes by name. Forces are in weights of can and load. Where several notes of a film hold, the
+one that the film names first is shown."""
 
 Spans = list[tuple[float, float]]
 """From when to when [s] something holds."""
@@ -197,7 +205,7 @@ def draw_warning(sheet: Sheet, doubts: Sequence[str], top: int) -> None:
     """
     if not doubts:
         return
-    letters = int((sheet.width / sheet.unit - 4) / _LETTER)
+    letters = int((sheet.width / sheet.unit - _WARNING_MARGINS) / _LETTER)
     lines = ["Not to be relied on"]
     for doubt in doubts:
         reason, *_ = doubt.partition(" (")

@@ -26,6 +26,8 @@ _EYE_DISTANCE = 6.0
 """Distance of the eye from the middle of the race, in its lengths."""
 _EYE = np.array([0.0, -math.cos(0.6), math.sin(0.6)])
 """Direction of the eye: in front of the board, and so high above it that no can hides another."""
+_BEFORE = 0.4
+"""How much of the incline is seen before the start, for the names, in lengths of the race."""
 _BEHIND = 1.5 * RADIUS
 """How far behind the axis of its can a plate ends, as drawn [m]."""
 _LATE = 0.4
@@ -165,11 +167,11 @@ class Race(Film):
         return display
 
     def _view(self, display: Display, pixels: tuple[int, int], top: int) -> View:
-        """Return the view of all lanes, with room for the names before the start."""
+        """Return the view of all lanes from before the start to the finish."""
         outlines = [
             display.outline(lane, np.array([u, 0.0, 0.0, 0.0]))
             for lane in range(len(display.lanes))
-            for u in (-0.4 * self.length, self.length)
+            for u in (-_BEFORE * self.length, self.length)
         ]
         points = np.reshape(outlines, (-1, 3))
         distance = _EYE_DISTANCE * self.length * scale(display.scenes[0])
@@ -220,7 +222,7 @@ def _check_equal_terms(runners: Sequence[Runner]) -> None:
 
 
 def _join_centres(sheet: Sheet, view: View, display: Display, positions: np.ndarray) -> None:
-    """Mark the loads' centres of mass at the near ends of the cans, and join them."""
+    """Mark the loads' centres of mass on the near ends of the cans, and join them."""
     places = []
     for lane, (scene, position) in enumerate(zip(display.scenes, positions, strict=True)):
         u, phi, _, lift = position

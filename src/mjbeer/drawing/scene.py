@@ -5,9 +5,7 @@ whatever the scene's is: none is too small or too large for the single precision
 """
 
 import dataclasses
-import math
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import mujoco
 import numpy as np
@@ -15,8 +13,9 @@ from PIL import Image
 from scipy.interpolate import CubicHermiteSpline
 
 from mjbeer.drawing import opengl
-from mjbeer.drawing.camera import View, circle, in_space, on_incline, scale
-from mjbeer.drawing.sheet import Colour, Sheet
+from mjbeer.drawing.camera import View, circle, on_incline, scale
+from mjbeer.drawing.scenery import Scenery
+from mjbeer.drawing.sheet import Sheet
 from mjbeer.exceptions import ParameterError, RenderingError
 from mjbeer.model import looks
 from mjbeer.model.build import rolling_spec
@@ -29,27 +28,8 @@ from mjbeer.theory.trajectory import Trajectory
 
 _UNSEEN = mujoco.mjNGROUP - 1
 """The group of geoms that are not drawn. Each can has one of the groups before it to itself."""
-_STRIPE = math.pi / 2 * RADIUS
-"""Length of a stripe of the board [m]. Stripe 0, a pale one, begins at x = 0, as in the
-templates."""
-_PALE = np.array([0.94, 0.84, 0.69])
-_DARK = np.array([0.84, 0.71, 0.54])
-"""Colours of the stripes, as in mjcf/assets.xml."""
-_SQUARE = 0.1
-"""Distance of the lines on the wall [m]; x = 0 is half-way between two of them."""
-_LINE = _SQUARE / 64
-"""Width of these lines [m]: two of the 128 pixels of a square in the templates' texture."""
-_WALL = np.array([0.985, 0.99, 1.0])
-_GRID = np.array([0.84, 0.87, 0.92])
-"""Colours of the wall and of its lines, as in mjcf/scene.xml."""
-_PAINT = np.array([0.15, 0.17, 0.2])
-"""Colour of lines across the board, such as the start of a race."""
-_STROKE = 0.003
-"""Half the width of these lines [m]."""
 _PALER = 0.35
 """How far the colour of foam is on the way from its load's to white."""
-_NEAR = np.array([0.0, -1.0, 0.0])
-"""Unit vector towards the viewer."""
 
 
 def coordinates(motion: Trajectory, times: np.ndarray) -> np.ndarray:
@@ -85,7 +65,6 @@ class Display:
             raise ParameterError(f"at most {_UNSEEN} cans can be drawn together, got {len(scenes)}")
         self.scenes = scenes
         self.lanes = [lane * apart for lane in range(len(scenes))]
-        self._lines = lines
         first, *others = (_drawn_spec(scene, group) for group, scene in enumerate(scenes))
         parent = first.body("incline") or first.worldbody
         for number, spec in enumerate(others, start=1):
@@ -98,6 +77,7 @@ class Display:
         first.geom("wall").pos += [0, self.lanes[-1], 0]
         self.model = compile_spec(first)
         self.data = mujoco.MjData(self.model)
+        self.scenery = Scenery(self.model, scenes[0], lines)
 
     def paint(
         self, labels: Sequence[Sequence[float]], loads: Sequence[Sequence[float] | None]
@@ -154,112 +134,6 @@ class Display:
         ring = on_incline(scene, u, RADIUS + lift) + edge
         return np.stack([np.insert(ring, 1, y, axis=1) for y in self.ends(number)])
 
-    def draw_empty(self, sheet: Sheet, view: View) -> None:
-        """Draw wall and board as flat areas, which takes a tenth of the time that OpenGL takes.
-
-        What is on the sheet above and below the view may be drawn over.
-        """
-        self._draw_wall(sheet, view)
-        self._draw_board(sheet, view)
-
-    def _draw_wall(self, sheet: Sheet, view: View) -> None:
-        """Draw the wall behind the board, and a grid of lines on it."""
-        y = float(self.model.geom("wall").pos[1])
-        corners = view.corners(y)
-        left, low = corners.min(axis=0)
-        right, high = corners.max(axis=0)
-        upright = [[(x, y, low), (x, y, high)] for x in _grid(left, right)]
-        level = [[(left, y, z), (right, y, z)] for z in _grid(low, high)]
-        grid = _separated(np.reshape(upright + level, (-1, 2, 3)))
-        width = _LINE * view.scale(np.array([left, y, low]))
-        sheet.area(view.pixel(np.insert(corners, 1, y, axis=1)), self.lit(_WALL, _NEAR, view))
-        sheet.line(view.pixel(grid), width, self.lit(_GRID, _NEAR, view))
-
-    def _draw_board(self, sheet: Sheet, view: View) -> None:
-        """Draw the upper side of the board and its front: every eye sees these two."""
-        board = self.model.geom("board")
-        front = board.pos[1] - board.size[1]
-        back = board.pos[1] + board.size[1]
-        under = board.pos[2] - board.size[2]
-        over = board.pos[2] + board.size[2]
-        scene = self.scenes[0]
-        edge = in_space(scene, 0.0, over, front)
-        up = in_space(scene, 0.0, 1.0, 0.0)
-        upper_side = _Face(scene, edge, in_space(scene, 0.0, over, back), up)
-        front_side = _Face(scene, edge, in_space(scene, 0.0, under, front), _NEAR)
-
-        seen = np.concatenate([view.corners(front), view.corners(back)])
-        along = seen @ on_incline(scene, 1.0, 0.0)
-        numbers = np.arange(along.min() // _STRIPE - 1, along.max() // _STRIPE + 1)
-        self._draw_stripes(sheet, view, upper_side, numbers)
-        if len(self._lines):
-            painted = upper_side.bands(np.array(self._lines) - _STROKE, 2 * _STROKE)
-            sheet.area(view.pixel(painted), self.lit(_PAINT, up, view))
-        self._draw_stripes(sheet, view, front_side, numbers)
-
-    def _draw_stripes(self, sheet: Sheet, view: View, face: "_Face", numbers: np.ndarray) -> None:
-        """Draw the stripes of a face that have some successive `numbers`; the odd ones are dark."""
-        ground = face.bands(_STRIPE * numbers[:1], _STRIPE * len(numbers))
-        dark = face.bands(_STRIPE * numbers[numbers % 2 == 1], _STRIPE)
-        sheet.area(view.pixel(ground), self.lit(_PALE, face.normal, view))
-        sheet.area(view.pixel(dark), self.lit(_DARK, face.normal, view))
-
-    def shade(self, sheet: Sheet, view: View, outline: np.ndarray) -> None:
-        """Draw the shadow on the board of a can with an `outline`, as `Display.outline` returns it.
-
-        It is the quadrilateral between the ends of the shadows of the can's near and far end.
-        """
-        scene = self.scenes[0]
-        along = in_space(scene, 1.0, 0.0, 0.0)
-        up = in_space(scene, 0.0, 1.0, 0.0)
-        light = self.model.light_dir[0]
-        board = self.model.geom("board")
-        height = outline @ up - board.pos[2] - board.size[2]
-        near, far = outline - np.multiply.outer(height / (light @ up), light)
-        corners = np.array(
-            [
-                near[(near @ along).argmin()],
-                near[(near @ along).argmax()],
-                far[(far @ along).argmax()],
-                far[(far @ along).argmin()],
-            ]
-        )
-        middle = corners.mean(axis=0)
-        for share in (0.8, 0.95):  # its edge is soft
-            shadow = middle + share * (corners - middle)
-            sheet.area(view.pixel(shadow), (0.25, 0.15, 0.05), alpha=0.16)
-
-    def lit(self, colour: np.ndarray, normal: np.ndarray, view: View) -> Colour:
-        """Return the colour of a face with a `normal`, lit by the sun and from the eye."""
-        model = self.model
-        head = model.vis.headlight
-        sun = model.light_diffuse[0] * max(0.0, -normal @ model.light_dir[0])
-        light = head.ambient + head.diffuse * max(0.0, float(normal @ view.axes[2])) + sun
-        red, green, blue = np.minimum(colour * light, 1.0).tolist()
-        return red, green, blue
-
-
-class _Face(NamedTuple):
-    """A face of the board between two edges, which both run down the incline without end."""
-
-    scene: Scene
-    one: np.ndarray
-    """The place on one edge that is not down the incline at all [m], shape (3,)."""
-    other: np.ndarray
-    """The place on the other edge, likewise."""
-    normal: np.ndarray
-    """Unit vector out of the board."""
-
-    def bands(self, begin: np.ndarray, length: float) -> np.ndarray:
-        """Return bands across the face as one path with gaps, shape (points, 3).
-
-        They `begin` at some distances down the incline and have a `length` along it [m].
-        """
-        first = in_space(self.scene, begin, 0.0, 0.0)
-        last = in_space(self.scene, begin + length, 0.0, 0.0)
-        corners = [first + self.one, last + self.one, last + self.other, first + self.other]
-        return _separated(np.stack(corners, axis=1))
-
 
 def _drawn_spec(scene: Scene, group: int) -> mujoco.MjSpec:
     """Return what is drawn of a scene, with the geoms of its can in a group."""
@@ -295,18 +169,6 @@ def _resize(scene: Scene) -> Scene:
 def _prefix(number: int) -> str:
     """Return what the names in a lane begin with."""
     return f"{number}-" if number else ""
-
-
-def _grid(low: float, high: float) -> np.ndarray:
-    """Return the places of the lines on the wall between two places [m]."""
-    first, last = np.floor(np.array([low, high]) / _SQUARE + 0.5)
-    return _SQUARE * (np.arange(first, last) + 0.5)
-
-
-def _separated(shapes: np.ndarray) -> np.ndarray:
-    """Return n lines or polygons of k points, shape (n, k, d), as one path with gaps (NaN)."""
-    gap = np.full_like(shapes[:, :1], np.nan)
-    return np.concatenate([shapes, gap], axis=1).reshape(-1, shapes.shape[2])
 
 
 class Painter:
@@ -346,7 +208,7 @@ class Painter:
         if self._empty is not None:
             sheet.put(self._empty, view.top)
         else:
-            self._display.draw_empty(sheet, view)
+            self._display.scenery.draw(sheet, view)
             if self._still:
                 self._empty = sheet.part(view.top, view.top + view.pixels[1])
         self._display.pose(positions)
@@ -354,7 +216,7 @@ class Painter:
             self._display.outline(number, position) for number, position in enumerate(positions)
         ]
         for outline in outlines:
-            self._display.shade(sheet, view, outline)
+            self._display.scenery.shade(sheet, view, outline)
         for number in reversed(range(len(outlines))):  # the nearest at last
             edges = view.edges(outlines[number], margin=3)
             if edges.right > edges.left and edges.lower > edges.upper:

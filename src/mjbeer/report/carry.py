@@ -140,7 +140,7 @@ class Carry(Film):
         display = Display([sliding(0.0)] * len(MOVES), _LANE, lines=(0.0, _DISTANCE))
         view = _view((width, height - top - below), top)
         strip = ChartStrip([_force_chart(runs)], width, below)
-        display.draw_empty(sheet, view)
+        display.scenery.draw(sheet, view)
         empty = sheet.part(top, height - below)
         for time in times:
             sheet.put(empty, top)
@@ -179,7 +179,7 @@ def _draw_move(
     move = MOVES[lane]
     can = standing()
     place = np.array([np.interp(time, run.time, run.place), lane * _LANE, _HEIGHT])
-    display.shade(sheet, view, place + _OUTLINE)
+    display.scenery.shade(sheet, view, place + _OUTLINE)
     rise = float(np.interp(time, run.time, run.rise))
     _draw_can(sheet, view, display, can, place, rise)
     _draw_gripper(sheet, view, display, can, place, np.array(move.colour))
@@ -210,7 +210,7 @@ def _draw_can(
     surface = bottom + np.outer(can.height + rise * bottom[:, 0], [0, 0, 1])
 
     def face(corners: np.ndarray, colour: np.ndarray, normal: np.ndarray) -> None:
-        sheet.area(view.pixel(place + corners), display.lit(colour, normal, view))
+        sheet.area(view.pixel(place + corners), display.scenery.lit(colour, normal, view))
 
     for first in range(2 * _FACES):
         edges = slice(first, first + 3, 2)  # a face overlaps the next, so that no gap is seen
@@ -248,7 +248,7 @@ def _draw_gripper(
                 [-across - upward, across - upward, across + upward, upward - across]
             )
             points = centre + half * (normal + corners)
-            sheet.area(view.pixel(points), display.lit(paint, normal, view))
+            sheet.area(view.pixel(points), display.scenery.lit(paint, normal, view))
 
     pad = np.array([0.004, 0.012, 0.03])
     arm = np.array([0.005, 0.01, length / 2])
