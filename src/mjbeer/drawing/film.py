@@ -82,7 +82,11 @@ class Film(ABC):
 
 @dataclass(frozen=True)
 class MotionFilm(Film):
-    """The film of a motion."""
+    """The film of a motion.
+
+    Raises:
+      ParameterError: when it is planned, if the times of the motion do not increase.
+    """
 
     trajectory: Callable[[], Trajectory]
     """A function that computes the motion, and that can be pickled."""
@@ -109,16 +113,16 @@ def _pictures(
     width: int,
     height: int,
 ) -> Generator[np.ndarray]:
-    """Draw the pictures of a motion: the header above, then the scene, and the charts below."""
+    """Draw the pictures of a motion: the header above, the scene, and the charts below."""
     sheet = Sheet(width, height)
     display = Display([trajectory.scene])
-    has_charts = style.strips and len(trajectory.time) > 1 and width > _READABLE * sheet.unit
+    has_charts = bool(style.strips) and len(trajectory.time) > 1 and width > _READABLE * sheet.unit
     below = round(STRIP * sheet.unit) if has_charts else 0
     top = round(HEADER * sheet.unit)
     for_notes = round(NOTE * sheet.unit) if style.notes else 0
     scene_height = height - top - below
 
-    # What the camera follows has its place below the notes, and its view is then extended to them.
+    # The camera keeps the can below the notes; the scene goes on behind them.
     front = display.ends()[0]
     under = _UNDER_ARROWS if "normal" in style.marks else AROUND
     below_notes = (width, scene_height - for_notes)
@@ -131,7 +135,7 @@ def _pictures(
     doubts = trajectory.solver_warnings
     strip = None
     if has_charts:
-        marked = next(iter(notes.values()), ())
+        marked = next(iter(notes.values()), ())  # when the first note holds
         strip = ChartStrip(charts(trajectory, style.strips), width, below, marked)
 
     with closing(Painter(display, (width, scene_height), camera.still)) as painter:

@@ -58,12 +58,13 @@ class Sheet:
         self.width = width
         self.height = height
         self.unit = height / 34
-        """The unit of letters and margins [pixels]."""
+        """The unit of letters and margins [pixels]: the sheet is 34 of them high."""
         self.boxes: list[Box] = []
         """The boxes of all texts on this picture, and of other places where no text may be."""
         self._renderer = RendererAgg(width, height, 72)  # at 72 dots per inch a point is a pixel
         self._pixels = np.asarray(self._renderer.buffer_rgba())
         self._pixels[:] = 255
+        # The renderer counts rows from below.
         self._flip = Affine2D().scale(1, -1).translate(0, height)
         self._pasting = self._renderer.new_gc()
 
@@ -111,7 +112,7 @@ class Sheet:
         alpha: float = 1.0,
         dashes: Sequence[float] = (),
     ) -> None:
-        """Draw a line through places of shape (n, 2).
+        """Draw a line through places of shape (n, 2), with a gap at each that is NaN.
 
         `dashes` are the lengths of what is drawn and left out in turn, in widths of the line.
         """
@@ -121,7 +122,7 @@ class Sheet:
         self._renderer.draw_path(pen, Path(places), self._flip)
 
     def area(self, places: np.ndarray, colour: Colour, alpha: float = 1.0) -> None:
-        """Fill the polygon with corners at places of shape (n, 2)."""
+        """Fill the polygon with corners at places of shape (n, 2), or polygons with NaN between."""
         pen = self._pen(0, colour, alpha)
         polygon = Path(places, closed=False)
         self._renderer.draw_path(pen, polygon, self._flip, to_rgba(colour, alpha))
@@ -133,7 +134,7 @@ class Sheet:
         self._renderer.draw_path(pen, Path.unit_circle(), shape, to_rgba(colour))
 
     def arrow(self, tail: np.ndarray, tip: np.ndarray, width: float, colour: Colour) -> None:
-        """Draw an arrow. One that is shorter than its head is drawn as a smaller arrow."""
+        """Draw an arrow. One that would be shorter than its head is made smaller as a whole."""
         along = np.asarray(tip) - tail
         length = float(np.hypot(*along))
         if length < 1:

@@ -41,7 +41,7 @@ class Line:
     values: np.ndarray
     """Values at these times."""
     colour: Colour | None = None
-    """None for theory's line, which is seen from the beginning."""
+    """None is for theory's line, which is seen from the beginning."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +49,7 @@ class Chart:
     """A chart over time."""
 
     title: str
-    """What it shows, with letter and unit."""
+    """What it shows, with its letter and unit."""
     lines: Sequence[Line]
     low: float = -math.inf
     """Least value that the chart has room for."""
@@ -63,7 +63,7 @@ class Quantity(NamedTuple):
     """A quantity of a motion that a chart can show."""
 
     title: str
-    """What it is, with letter and unit."""
+    """What it is, with its letter and unit."""
     values: Callable[[Trajectory], np.ndarray]
     """Returns its values at the samples of a motion, shape (samples,)."""
     low: float = -math.inf
@@ -155,7 +155,7 @@ QUANTITIES = {
 
 
 def charts(trajectory: Trajectory, names: Sequence[str]) -> list[Chart]:
-    """Return the charts of quantities named in QUANTITIES, with what theory says."""
+    """Return charts of the quantities of these names in QUANTITIES, with theory's lines."""
     theory = _theory(trajectory)
     return [_chart(trajectory, theory, name) for name in names]
 
@@ -178,7 +178,10 @@ def _chart(trajectory: Trajectory, theory: Trajectory | None, name: str) -> Char
 
 
 def _theory(trajectory: Trajectory) -> Trajectory | None:
-    """Return the exact motion from the start of a simulated one; None if there is none to show."""
+    """Return the exact motion from the start of a simulated one, or None if there is none to show.
+
+    The start is at t = 0, and theory has nothing to show before it.
+    """
     if trajectory.rolling == "exact" or trajectory.time[0] < 0:
         return None
     times = np.linspace(trajectory.time[0], trajectory.time[-1], 1500)
@@ -225,22 +228,15 @@ class ChartStrip:
             "axes.linewidth": 0.06 * self._unit,
         }
         with rc_context(STYLE | style):
-            figure = Figure(figsize=(width / 72, height / 72), dpi=72)
+            figure = Figure(figsize=(width / 72, height / 72), dpi=72)  # an inch is 72 pixels
             canvas = FigureCanvasAgg(figure)
-            panels = figure.subplots(1, len(charts), squeeze=False)[0]
-            figure.subplots_adjust(
-                left=4.5 * letters / width,
-                right=1 - 2 * letters / width,
-                top=1 - 1.8 * letters / height,
-                bottom=3 * letters / height,
-                wspace=6 * letters / (width / len(charts) - 6 * letters),
-            )
+            panels = self._make_panels(figure, letters)
             growing = []
             for panel, chart in zip(panels, charts, strict=True):
                 for first, last in marked:
                     panel.axvspan(first, last, color=_MARKED, linewidth=0)
                 growing += self._draw_panel(panel, chart)
-            self._add_key(figure, panels[0], width)
+            self._add_key(figure, panels[0])
             canvas.draw()
             self._beginning = np.array(canvas.buffer_rgba())
             for line in growing:
@@ -249,6 +245,20 @@ class ChartStrip:
         self._panels: list[tuple[Transform, BboxBase]] = [
             (panel.transData, panel.get_window_extent()) for panel in panels
         ]
+
+    def _make_panels(self, figure: Figure, letters: float) -> list[Axes]:
+        """Return a panel for each chart, with room for `letters` of this height [pixels]."""
+        width, height = figure.bbox.size
+        count = len(self._charts)
+        panels = figure.subplots(1, count, squeeze=False)[0]
+        figure.subplots_adjust(
+            left=4.5 * letters / width,
+            right=1 - 2 * letters / width,
+            top=1 - 1.8 * letters / height,
+            bottom=3 * letters / height,
+            wspace=6 * letters / (width / count - 6 * letters),
+        )
+        return list(panels)
 
     def _draw_panel(self, panel: Axes, chart: Chart) -> list[Line2D]:
         """Draw a chart without the lines that grow with the film, and return these."""
@@ -273,8 +283,8 @@ class ChartStrip:
         panel.tick_params(pad=0.25 * unit, length=0.3 * unit)
         return [line for line in panel.lines if line.get_animated()]
 
-    def _add_key(self, figure: Figure, panel: Axes, width: int) -> None:
-        """Name the lines below the charts, unless all have one name."""
+    def _add_key(self, figure: Figure, panel: Axes) -> None:
+        """Name the lines of a panel below the charts, unless they have one name."""
         handles, names = panel.get_legend_handles_labels()
         named = dict(zip(names, handles, strict=True))
         if len(named) > 1:
@@ -282,7 +292,7 @@ class ChartStrip:
                 named.values(),
                 named,
                 loc="lower right",
-                bbox_to_anchor=(1 - self._unit / width, 0.0),
+                bbox_to_anchor=(1 - self._unit / figure.bbox.width, 0.0),
                 ncols=4,
                 borderaxespad=0.1,
                 borderpad=0,

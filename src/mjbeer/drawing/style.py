@@ -30,12 +30,13 @@ class SceneNames(NamedTuple):
     """What is in it."""
 
 
-_NAMES = {  # by the names of looks
+_NAMES = {
     "sliding": SceneNames("Beer that slides in its can without friction", "can", "beer"),
     "frozen": SceneNames("Beer frozen to its can", "can", "beer"),
     "pendulum": SceneNames("A pendulum in a rolling wheel", "wheel", "bob"),
     "hoop": SceneNames("A weight on the rim of a hoop", "hoop", "bar"),
 }
+"""What scenes and their parts are called, by how the scenes look."""
 
 
 def scene_names(scene: Scene) -> SceneNames:
@@ -68,8 +69,12 @@ class FilmStyle:
         if scene.dissipates:
             title = "A can that its load or the air brakes"
         if trajectory.rolling == "contact":
-            marks: tuple[Mark, ...] = ("phi", "paths", "normal", "friction")
-            return cls(title, strips=("phi", "normal"), marks=marks, camera=camera)
+            return cls(
+                title,
+                strips=("phi", "normal"),
+                marks=("phi", "paths", "normal", "friction"),
+                camera=camera,
+            )
         if scene.dissipates:
             return cls(title, strips=("phi", "u_dot"), camera=camera)
         if scene.attachment == "sliding":

@@ -125,27 +125,28 @@ class Carry(Film):
     )
 
     def plan(self) -> RenderPlan:
+        can = standing()
         runs = [
-            carry(standing(), duration=move.duration, after=_DURATION - move.duration)
-            for move in MOVES
+            carry(can, duration=move.duration, after=_DURATION - move.duration) for move in MOVES
         ]
-        return RenderPlan(0.0, _DURATION, self.speed, partial(self._draw, runs))
+        return RenderPlan(0.0, _DURATION, self.speed, partial(self._draw, can, runs))
 
     def _draw(
-        self, runs: list[Carried], times: np.ndarray, width: int, height: int
+        self, can: Standing, runs: list[Carried], times: np.ndarray, width: int, height: int
     ) -> Generator[np.ndarray]:
         sheet = Sheet(width, height)
         top = round(HEIGHT * sheet.unit)
         below = round(STRIP * sheet.unit)
         display = Display([sliding(0.0)] * len(MOVES), _LANE, lines=(0.0, _DISTANCE))
         view = _view((width, height - top - below), top)
-        strip = ChartStrip([_force_chart(runs)], width, below)
+        pen = _Pen(sheet, view, display)
+        strip = ChartStrip([_force_chart(can, runs)], width, below)
         display.scenery.draw(sheet, view)
         empty = sheet.part(top, height - below)
         for time in times:
             sheet.put(empty, top)
             for lane in reversed(range(len(MOVES))):  # the nearest comes last
-                _draw_move(sheet, view, display, lane, runs[lane], time)
+                _draw_move(pen, can, lane, runs[lane], time)
             words = "half a 12-oz can of beer, carried 0.4 m"
             draw_title(sheet, self.title, words, time, self.speed)
             strip.draw(sheet, time, height - below)
@@ -160,9 +161,8 @@ def _view(pixels: tuple[int, int], top: int) -> View:
     return View.towards(_EYE, np.reshape(corners, (-1, 3)), pixels, top, 0.02)
 
 
-def _force_chart(runs: list[Carried]) -> Chart:
+def _force_chart(can: Standing, runs: list[Carried]) -> Chart:
     """Return the chart of the forces of the grippers, and of what they would be with solid beer."""
-    can = standing()
     mass = can.mass + can.can.mass
     lines = [
         Line(f"moved in {move.duration:g} s", run.time, run.force, move.colour)
@@ -172,27 +172,46 @@ def _force_chart(runs: list[Carried]) -> Chart:
     return Chart("force [N]", lines)
 
 
-def _draw_move(
-    sheet: Sheet, view: View, display: Display, lane: int, run: Carried, time: float
-) -> None:
+class _Pen(NamedTuple):
+    """Draws lit faces of things in space onto a sheet."""
+
+    sheet: Sheet
+    view: View
+    display: Display
+
+    def face(self, corners: np.ndarray, colour: np.ndarray, normal: np.ndarray) -> None:
+        """Fill the face between some corners [m], shape (n, 3)."""
+        lit = self.display.scenery.lit(colour, normal, self.view)
+        self.sheet.area(self.view.pixel(corners), lit)
+
+    def box(self, centre: np.ndarray, half: np.ndarray, colour: np.ndarray) -> None:
+        """Draw a box with a centre and half its sizes [m]."""
+        for axis in (0, 2, 1):  # the front comes last
+            # Of two opposite sides, the one that faces the eye is seen.
+            normal = np.sign(self.view.eye - centre)[axis] * np.eye(3)[axis]
+            across, upward = np.delete(np.eye(3), axis, axis=0)
+            corners = np.array(
+                [-across - upward, across - upward, across + upward, upward - across]
+            )
+            self.face(centre + half * (normal + corners), colour, normal)
+
+
+def _draw_move(pen: _Pen, can: Standing, lane: int, run: Carried, time: float) -> None:
     """Draw a gripper and its can at a `time` [s], and a plate that says how the beer rises."""
     move = MOVES[lane]
-    can = standing()
     place = np.array([np.interp(time, run.time, run.place), lane * _LANE, _HEIGHT])
-    display.scenery.shade(sheet, view, place + _OUTLINE)
-    rise = float(np.interp(time, run.time, run.rise))
-    _draw_can(sheet, view, display, can, place, rise)
-    _draw_gripper(sheet, view, display, can, place, np.array(move.colour))
+    pen.display.scenery.shade(pen.sheet, pen.view, place + _OUTLINE)
+    _draw_can(pen, can, place, float(np.interp(time, run.time, run.rise)))
+    _draw_gripper(pen, can, place, np.array(move.colour))
+
     highest = np.abs(run.rise[run.time <= time]).max()
     trust = "only a picture" if highest > QUANTITATIVE else "within 0.1 R"
     lines = [f"in {move.duration:g} s", f"rises by {highest:.2f} R: {trust}"]
     beside = place + np.array([-0.065, 0, can.height])
-    sheet.plate(view.pixel(beside), lines, move.colour, (1, 0.5))
+    pen.sheet.plate(pen.view.pixel(beside), lines, move.colour, (1, 0.5))
 
 
-def _draw_can(
-    sheet: Sheet, view: View, display: Display, can: Standing, place: np.ndarray, rise: float
-) -> None:
+def _draw_can(pen: _Pen, can: Standing, place: np.ndarray, rise: float) -> None:
     """Draw a can with the bottom at a `place` [m], cut open in front.
 
     The liquid is higher by `rise` radii at the wall ahead.
@@ -201,60 +220,37 @@ def _draw_can(
     wall = (1 + WALL) * can.can.radius
     room = min(can.height, length - can.height)
     assert abs(rise) * wall < room, "the surface reaches the lid or the bottom"
-    metal = display.model.mat("metal").rgba[:3]
-    beer = display.model.mat("beer").rgba[:3]
+    metal = pen.display.model.mat("metal").rgba[:3]
+    beer = pen.display.model.mat("beer").rgba[:3]
     # Unit vectors from the axis: first those to the half behind it, then those to the front half.
     around = np.insert(circle(1.0, 2 * _FACES), 2, 0.0, axis=1)
-    bottom = wall * around
+    bottom = place + wall * around
     lid = bottom + np.array([0, 0, length])
-    surface = bottom + np.outer(can.height + rise * bottom[:, 0], [0, 0, 1])
-
-    def face(corners: np.ndarray, colour: np.ndarray, normal: np.ndarray) -> None:
-        sheet.area(view.pixel(place + corners), display.scenery.lit(colour, normal, view))
-
+    surface = bottom + np.outer(can.height + rise * wall * around[:, 0], [0, 0, 1])
     for first in range(2 * _FACES):
         edges = slice(first, first + 3, 2)  # a face overlaps the next, so that no gap is seen
         if first < _FACES:  # the inside of the wall at the back
-            face(np.concatenate([bottom[edges], lid[edges][::-1]]), metal, -around[first])
+            inside = np.concatenate([bottom[edges], lid[edges][::-1]])
+            pen.face(inside, metal, -around[first])
         else:  # the liquid, where the wall is cut away
-            face(np.concatenate([bottom[edges], surface[edges][::-1]]), beer, around[first])
-    face(surface, beer, np.array([-rise, 0, 1]))
+            front = np.concatenate([bottom[edges], surface[edges][::-1]])
+            pen.face(front, beer, around[first])
+    pen.face(surface, beer, np.array([-rise, 0, 1]))
     for limit in (-QUANTITATIVE, QUANTITATIVE):
         height = can.height + limit * can.can.radius
-        line = place + bottom[_FACES:] + np.array([0, 0, height])
-        sheet.line(view.pixel(line), 0.12 * sheet.unit, INK)
+        line = bottom[_FACES:] + np.array([0, 0, height])
+        pen.sheet.line(pen.view.pixel(line), 0.12 * pen.sheet.unit, INK)
 
 
-def _draw_gripper(
-    sheet: Sheet,
-    view: View,
-    display: Display,
-    can: Standing,
-    place: np.ndarray,
-    colour: np.ndarray,
-) -> None:
+def _draw_gripper(pen: _Pen, can: Standing, place: np.ndarray, colour: np.ndarray) -> None:
     """Draw a gripper, with pads of a colour, that holds a can with the bottom at a `place` [m]."""
     length = can.can.length
     wall = (1 + WALL) * can.can.radius
-
-    def draw_box(x: float, z: float, half: np.ndarray, paint: np.ndarray) -> None:
-        """Draw a box from its centre and half its sizes [m]."""
-        centre = place + np.array([x, 0.0, z])
-        for axis in (0, 2, 1):  # the front comes last
-            # Of two opposite sides, the one that faces the eye is seen.
-            normal = np.sign(view.eye - centre)[axis] * np.eye(3)[axis]
-            across, upward = np.delete(np.eye(3), axis, axis=0)
-            corners = np.array(
-                [-across - upward, across - upward, across + upward, upward - across]
-            )
-            points = centre + half * (normal + corners)
-            sheet.area(view.pixel(points), display.scenery.lit(paint, normal, view))
-
     pad = np.array([0.004, 0.012, 0.03])
     arm = np.array([0.005, 0.01, length / 2])
     bridge = np.array([wall + 0.024, 0.014, 0.008])
     for side in (-1, 1):
-        draw_box(side * (wall + 0.005), length / 2, pad, colour)
+        pen.box(place + np.array([side * (wall + 0.005), 0, length / 2]), pad, colour)
     for side in (-1, 1):
-        draw_box(side * (wall + 0.014), length / 2 + 0.03, arm, _STEEL)
-    draw_box(0.0, length + 0.03, bridge, _STEEL)
+        pen.box(place + np.array([side * (wall + 0.014), 0, length / 2 + 0.03]), arm, _STEEL)
+    pen.box(place + np.array([0, 0, length + 0.03]), bridge, _STEEL)
