@@ -45,8 +45,12 @@ def in_space(
 
 def circle(radius: float, count: int = 48) -> np.ndarray:
     """Return points of a circle about the origin, shape (count + 1, 2), the first also last."""
-    angle = np.linspace(0, 2 * math.pi, count + 1)
-    return radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    return radius * unit_vectors(np.linspace(0, 2 * math.pi, count + 1))
+
+
+def unit_vectors(angle: float | np.ndarray) -> np.ndarray:
+    """Return unit vectors at angles [rad] from the first axis to the second, shape (..., 2)."""
+    return np.stack([np.cos(angle), np.sin(angle)], axis=-1)
 
 
 class Edges(NamedTuple):

@@ -9,7 +9,8 @@ from functools import partial
 import numpy as np
 
 from mjbeer import require
-from mjbeer.drawing.annotations import Annotations, Board
+from mjbeer.drawing.annotations import Annotations
+from mjbeer.drawing.board import Board
 from mjbeer.drawing.camera import AROUND, Edges, follow
 from mjbeer.drawing.overlay import (
     HEADER,

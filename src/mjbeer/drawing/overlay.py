@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from mjbeer.drawing.annotations import LEGENDS
+from mjbeer.drawing.quantities import mean_forces
 from mjbeer.drawing.sheet import INK, Sheet
-from mjbeer.drawing.strip import mean_forces
 from mjbeer.drawing.style import FilmStyle, scene_names
 from mjbeer.drawing.words import in_words
 from mjbeer.theory.scene import GRAVITY

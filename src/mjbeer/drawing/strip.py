@@ -1,11 +1,10 @@
 """The strip below a film: charts of quantities over time, each with a dot in step with the film."""
 
 import contextlib
-import dataclasses
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from matplotlib import rc_context
@@ -15,10 +14,10 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.transforms import BboxBase, Transform
 
+from mjbeer.drawing.quantities import INTERVALS, QUANTITIES
 from mjbeer.drawing.sheet import Colour, Sheet
 from mjbeer.exceptions import MjbeerError
 from mjbeer.output.plots import COLOURS, STYLE
-from mjbeer.theory.scene import GRAVITY
 from mjbeer.theory.trajectory import Trajectory, exact_motion
 
 _THEORY = "#b4bcc8"
@@ -27,8 +26,6 @@ _MARKED = "#fff1b8"
 """Ground of the times at which something happens."""
 _LETTERS = 1.15
 """Height of the letters, in units: tenths of the strip's height."""
-_INTERVALS = 50
-"""A force is a mean over the duration of the motion, divided by this number."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,101 +56,6 @@ class Chart:
     """Least range of values that it shows: a straight line must not look like a crooked one."""
 
 
-class Quantity(NamedTuple):
-    """A quantity of a motion that a chart can show."""
-
-    title: str
-    """What it is, with its letter and unit."""
-    values: Callable[[Trajectory], np.ndarray]
-    """Returns its values at the samples of a motion, shape (samples,)."""
-    low: float = -math.inf
-    high: float = math.inf
-    least: float = 0.0
-    """`low`, `high` and `least` are the limits of its chart, as in `Chart`."""
-
-
-def wrapped(angle: np.ndarray | float) -> np.ndarray:
-    """Return an angle [rad] in degrees between -180 and 180."""
-    return (np.degrees(angle) + 180) % 360 - 180
-
-
-def mean_motion(motion: Trajectory, time: np.ndarray) -> np.ndarray:
-    """Return where a can that accelerates evenly is [m] at some times [s].
-
-    The motion swings about that of this can. If the load slides, this can starts with the same
-    momentum, but with its load at rest at the equilibrium; if the load is frozen, it starts at the
-    same place with the same speed. It has neither damping nor drag: what these cost is how far the
-    motion falls behind it.
-    """
-    scene = motion.scene
-    u = motion.u[0]
-    u_dot = motion.u_dot[0]
-    if scene.dissipates:
-        scene = dataclasses.replace(scene, damping=0.0, drag=0.0)
-    if scene.attachment == "sliding":
-        swing = scene.load.moment / scene.effective_mass
-        u = u - swing * (math.sin(motion.phi[0]) - math.sin(scene.equilibrium()))
-        u_dot = u_dot - swing * math.cos(motion.phi[0]) * motion.phi_dot[0]
-    since = time - motion.time[0]
-    return u + u_dot * since + scene.acceleration() * since**2 / 2
-
-
-class MeanForces(NamedTuple):
-    """Forces of the incline on the can, in weights of can and load, shape (samples,)."""
-
-    normal: np.ndarray
-    friction: np.ndarray
-    """It is positive up the incline."""
-
-
-def mean_forces(motion: Trajectory) -> MeanForces:
-    """Return the mean forces around each sample, also of a can that slips or flies.
-
-    They follow from the change of momentum in a fiftieth of the motion. The forces at an instant
-    would not be readable: a can that hardly presses on the ground rises and lands many times a
-    second, and each landing is a blow. Without gravity the unit is the weight on earth.
-    """
-    scene = motion.scene
-    moment = scene.load.moment
-    away = scene.mass * motion.lift_dot + moment * np.sin(motion.phi) * motion.phi_dot
-    downhill = scene.mass * motion.u_dot - moment * np.cos(motion.phi) * motion.phi_dot
-    weight = scene.mass * scene.gravity
-    normal = weight * math.cos(scene.incline) + _mean_rate(motion.time, away)
-    friction = weight * math.sin(scene.incline) + _mean_rate(motion.time, -downhill)
-    unit = scene.mass * (scene.gravity or GRAVITY)
-    return MeanForces(normal / unit, friction / unit)
-
-
-def _mean_rate(time: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Return the mean rate of change of values around each time."""
-    half = np.ptp(time) / _INTERVALS / 2
-    before = np.maximum(time - half, time[0])
-    after = np.minimum(time + half, time[-1])
-    return (np.interp(after, time, values) - np.interp(before, time, values)) / (after - before)
-
-
-QUANTITIES = {
-    "phi": Quantity("angle of the load, φ [°]", lambda motion: wrapped(motion.phi), least=10.0),
-    "u": Quantity("distance [m]", lambda motion: motion.u - motion.u[0]),
-    "u_dot": Quantity("speed [m/s]", lambda motion: motion.u_dot),
-    "ahead": Quantity(
-        "ahead of even acceleration [mm]",
-        lambda motion: 1e3 * (motion.u - mean_motion(motion, motion.time)),
-    ),
-    "normal": Quantity(
-        "normal force, N [weights]",
-        lambda motion: mean_forces(motion).normal,
-        low=-1.0,
-        high=4.0,  # the blow of a landing goes beyond
-    ),
-    "lift": Quantity("height of flight [mm]", lambda motion: 1e3 * motion.lift),
-    "slip": Quantity(
-        "slid instead of rolled [mm]", lambda motion: 1e3 * (motion.slip - motion.slip[0])
-    ),
-}
-"""What a chart can show, by name."""
-
-
 def charts(trajectory: Trajectory, names: Sequence[str]) -> list[Chart]:
     """Return charts of the quantities of these names in QUANTITIES, with theory's lines."""
     theory = _theory(trajectory)
@@ -170,7 +72,7 @@ def _chart(trajectory: Trajectory, theory: Trajectory | None, name: str) -> Char
         lines.append(Line("theory", theory.time[rolls], quantity.values(theory)[rolls]))
     title = quantity.title
     if name == "normal" and trajectory.rolling == "contact":
-        window = np.ptp(trajectory.time) / _INTERVALS
+        window = np.ptp(trajectory.time) / INTERVALS
         title = f"N [weights], {1e3 * window:.2g} ms means"
     if values.max() > quantity.high:
         title += f", up to {values.max():.0f}"
