@@ -35,10 +35,10 @@ def wrapped(angle: np.ndarray | float) -> np.ndarray:
 def mean_motion(motion: Trajectory, time: np.ndarray) -> np.ndarray:
     """Return where a can that accelerates evenly is [m] at some times [s].
 
-    The motion swings about that of this can. If the load slides, this can starts with the same
-    momentum, but with its load at rest at the equilibrium; if the load is frozen, it starts at the
-    same place with the same speed. It has neither damping nor drag: what these cost is how far the
-    motion falls behind it.
+    The can of the motion swings to and fro about this one. If the load slides, this can starts with
+    the same momentum, but with its load at rest at the equilibrium; if the load is frozen, it
+    starts at the same place with the same speed. It has neither damping nor drag: what these cost
+    is how far the can of the motion falls behind it.
     """
     scene = motion.scene
     u = motion.u[0]

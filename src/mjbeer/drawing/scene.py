@@ -46,9 +46,10 @@ def coordinates(motion: Trajectory, times: np.ndarray) -> np.ndarray:
 
 
 class Display:
-    """A board with cans of one size on it, and a wall behind.
+    """A model of a board with cans on it, and a wall behind.
 
-    Joints are named as in the templates, with a prefix for each lane. All lengths are as drawn.
+    All cans are drawn with one radius. Joints are named as in the templates, with a prefix for
+    each lane. Lengths are as drawn.
     """
 
     def __init__(
@@ -217,16 +218,17 @@ class Painter:
         ]
         for outline in outlines:
             self._display.scenery.shade(sheet, view, outline)
-        for number in reversed(range(len(outlines))):  # the nearest at last
+        for number in reversed(range(len(outlines))):  # the nearest comes last
             edges = view.edges(outlines[number], margin=3)
             if edges.right > edges.left and edges.lower > edges.upper:
                 can = self._draw(view.crop(edges), number)
                 sheet.composite(can, edges.left, view.top + edges.upper)
 
     def _draw(self, view: View, number: int) -> np.ndarray:
-        """Return a can in a view, shape (height, width, 4), uint8.
+        """Return the picture of a can in a view, shape (height, width, 4), uint8.
 
-        The last channel is how much the can covers."""
+        The last channel is how much the can covers.
+        """
         from OpenGL import GL
 
         self._option.geomgroup[:] = 0
