@@ -45,31 +45,82 @@ def test_a_full_disk_leaves_the_old_file(tmp_path: pathlib.Path) -> None:
     assert os.listdir(tmp_path) == ["motion.csv"]
 
 
-@pytest.mark.parametrize("words", ["simulate frozen", "export frozen", "render frozen", *FOLDERS])
+class Begun(Exception):
+    """A command has begun its work."""
+
+
+def begin(*_: object, **__: object) -> None:
+    """Stand in for the work of a command."""
+    raise Begun
+
+
+WORK = {
+    "simulate frozen": "cli.motions.trajectory_of",
+    "render frozen": "cli.motions.trajectory_of",
+    "render standing": "drawing.standing_film.StandingFilm.plan",
+    "sweep frozen --fill 0.3,0.5": "studies.sweep.sweep",
+    "report": "report.page.write",
+    "benchmark": "studies.benchmark.timing.run",
+    "stability": "studies.stability.stability_study.run",
+    "paper": "paper.stories.write",
+}
+"""The function that does the work of each command."""
+ENDINGS = {"render": ".mp4", "sweep": ".csv"}
+
+
+@pytest.mark.parametrize("words", WORK)
 def test_what_cannot_be_written_is_known_before_the_work(
     words: str,
     tmp_path: pathlib.Path,
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    work = [
-        "report.page.validate",
-        "studies.benchmark.timing.run",
-        "studies.stability.stability_study.run",
-    ]
-    work.append(
-        "drawing.video._mediapy" if words == "render frozen" else "cli.motions.trajectory_of"
-    )
-    for function in work:
-        monkeypatch.setattr(
-            f"mjbeer.{function}", lambda *_, **__: pytest.fail("the work was begun")
-        )
-    ending = {"export frozen": ".xml", "render frozen": ".mp4"}.get(words, "")
+    """Where the same command can write, it begins its work."""
+    monkeypatch.setattr(f"mjbeer.{WORK[words]}", begin)
+    command = words.split()
+    name = f"new{ENDINGS.get(command[0], '')}"
     folder = tmp_path / "misspelt"
-    target = folder / f"new{ending}"
-    assert main([*words.split(), "--output", str(target)]) == 2
+    target = folder / name
+    assert main([*command, "--output", str(target)]) == 2
     reason = f"there is no folder {folder}; the nearest one that exists is {tmp_path}"
     assert capsys.readouterr().err == f"mjbeer: cannot write {target}: {reason}\n"
+    assert not os.listdir(tmp_path)
+    with pytest.raises(Begun):
+        main([*command, "--output", str(tmp_path / name)])
+
+
+def test_an_export_names_the_folder_that_does_not_exist(
+    tmp_path: pathlib.Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """To export takes less than a second, so that nothing is looked at before."""
+    folder = tmp_path / "misspelt"
+    target = folder / "can.xml"
+    assert main(["export", "frozen", "--output", str(target)]) == 2
+    reason = f"there is no folder {folder}; the nearest one that exists is {tmp_path}"
+    assert capsys.readouterr().err == f"mjbeer: cannot write {target}: {reason}\n"
+
+
+@pytest.mark.parametrize("scene", ["frozen", "standing"])
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ("--output film.avi", "the file's name must end in .mp4, got 'film.avi'"),
+        ("--width 641", "width must be an even number of pixels up to 4096"),
+        ("--height 5000", "height must be an even number of pixels up to 4096"),
+    ],
+)
+def test_the_name_and_the_size_of_a_film_are_known_before_the_work(
+    scene: str,
+    options: str,
+    message: str,
+    tmp_path: pathlib.Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(f"mjbeer.{WORK[f'render {scene}']}", begin)
+    assert main(["render", scene, *options.split()]) == 2
+    assert capsys.readouterr().err.startswith(f"mjbeer: {message}")
     assert not os.listdir(tmp_path)
 
 
@@ -80,13 +131,7 @@ def test_a_folder_of_others_is_refused_before_the_work(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    for work in (
-        "report.page.write",
-        "studies.benchmark.timing.run",
-        "studies.stability.stability_study.run",
-    ):
-        monkeypatch.setattr(f"mjbeer.{work}", lambda *_: pytest.fail("the work was begun"))
-    monkeypatch.setattr("mjbeer.paper.stories.write", lambda *_: pytest.fail("the work was begun"))
+    monkeypatch.setattr(f"mjbeer.{WORK[command]}", begin)
     names = ["index.html", "stories.md", "summary.md"]
     for name in names:
         (tmp_path / name).write_text("mine")

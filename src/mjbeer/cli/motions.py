@@ -156,7 +156,8 @@ def _steady_rolling(scene: Scene) -> list[KeyFigure]:
         tilt = math.degrees(scene.terminal_tilt())
         roots = scene.modes().tolist()
     except MjbeerError as error:
-        reason, _, _ = str(error).partition(":")  # its first clause says what there is not
+        # The first clause says what does not exist.
+        reason, _, _ = str(error).partition(":")
         return [*figures, KeyFigure("terminal speed", None, "m/s", reason)]
     pairs = [[root.real, root.imag] for root in roots]
     words = [f"{root:.4g}" if root.imag else f"{root.real:.4g}" for root in roots]
@@ -174,7 +175,8 @@ def trajectory_of(given: Namespace) -> "Run":
     from mjbeer.simulation.simulate import simulate
 
     thing = scene(given)
-    with warnings.catch_warnings(action="ignore", category=LiquidWarning):  # `_warn` says it
+    # `_warn` tells what the run warns of.
+    with warnings.catch_warnings(action="ignore", category=LiquidWarning):
         return simulate(thing, given.duration, **start(given), **steps(given))
 
 
@@ -210,14 +212,15 @@ def render(given: Namespace) -> None:
 
     A can that stands is held, and its liquid is let go with a surface 0.1 R high at the wall.
     """
+    from mjbeer.drawing import video
+
+    video.check_target(given.output, given.width, given.height)
     if given.scene == "standing":
         _render_standing(given)
         return
-    from mjbeer.drawing.video import render
-
     trajectory = trajectory_of(given)
     _warn(Summary(trajectory, given.friction))
-    render(
+    video.render(
         trajectory,
         given.output,
         given.width,
@@ -263,12 +266,12 @@ def view(given: Namespace) -> None:
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, model.key(START).id)
     glfw.ERROR_REPORTING = "ignore"
-    if not glfw.init():  # MuJoCo would end the process
+    # Where GLFW fails, MuJoCo would end the process.
+    if not glfw.init():
         reason: Any = glfw.get_error()[1]
         raise RenderingError(
             f"no window can be opened: {reason.decode()}; `mjbeer render` draws a video without a "
-            f"window, and "
-            "`mjbeer export` writes a file for MuJoCo's viewer elsewhere"
+            "window, and `mjbeer export` writes a file for MuJoCo's viewer elsewhere"
         )
     os.environ.setdefault("LP_NUM_THREADS", "0")  # see `opengl.context`
     mujoco.viewer.launch(model, data, show_left_ui=False, show_right_ui=False)
@@ -320,26 +323,27 @@ def fit(given: Namespace) -> None:
         ) from None
     columns = dict(column.partition("=")[::2] for column in given.columns)
     track = read_track(given.file, columns, given.rate)
-    with warnings.catch_warnings(action="ignore", category=LiquidWarning):  # of a guess
+    # A warning about a guess says nothing about the fit.
+    with warnings.catch_warnings(action="ignore", category=LiquidWarning):
         guess = scene(given)
     with files.atomic_write(output) if output else nullcontext() as temporary:
-        found = fit(track, guess, given.free or ["incline"], dict(given.known), phi0, given.bend)
+        result = fit(track, guess, given.free or ["incline"], dict(given.known), phi0, given.bend)
         if given.json:
-            told = {
-                "values": found.values,
-                "errors": found.errors,
-                "noise": found.noise,
-                "warnings": found.warnings,
+            content = {
+                "values": result.values,
+                "errors": result.errors,
+                "noise": result.noise,
+                "warnings": result.warnings,
             }
-            terminal.write(to_json(told, indent=2))
+            terminal.write(to_json(content, indent=2))
         else:
-            terminal.write("\n".join([found.title, *found.lines()]) + "\n")
-            for warning in found.warnings:
+            terminal.write("\n".join([result.title, *result.lines()]) + "\n")
+            for warning in result.warnings:
                 say(f"note: {warning}", "yellow")
         if temporary and temporary.suffix == ".mp4":
-            found.video(temporary)
+            result.video(temporary)
         elif temporary:
-            figure: Any = found.plot()[0].figure
+            figure: Any = result.plot()[0].figure
             figure.savefig(temporary, facecolor="white", dpi=150)
     if output:
         say(f"wrote {output}")

@@ -17,7 +17,7 @@ from mjbeer.drawing.film import Film, RenderPlan
 from mjbeer.drawing.overlay import HEIGHT, STRIP, draw_title
 from mjbeer.drawing.sheet import Sheet
 from mjbeer.drawing.strip import Chart, ChartStrip, Line
-from mjbeer.exceptions import ParameterError, RenderingError
+from mjbeer.exceptions import RenderingError
 from mjbeer.model.attach import surface_slope
 from mjbeer.model.build import build
 from mjbeer.model.setting import MujocoIntegrator
@@ -182,10 +182,7 @@ def render_standing(
       RenderingError: if OpenGL or ffmpeg does not work; the message says what to do.
       OutputError: if the file cannot be written.
     """
-    target = require.path(path)
-    if target.suffix.lower() != ".mp4":
-        name = require.format_value(str(path))
-        raise ParameterError(f"the file's name must end in .mp4, got {name}")
+    target = video.check_target(path, width, height)
     plan = film.plan()
     with terminal.progress_bar(terminal.STDERR, len(plan.times(fps))) as begin:
         video.write(plan, target, width, height, fps, begin)
