@@ -138,6 +138,20 @@ def test_the_version_and_the_help_of_each_command(capsys: pytest.CaptureFixture[
     assert capsys.readouterr().out == f"mjbeer {version('mjbeer')}\n"
 
 
+def test_a_fit_without_its_file_takes_no_scene_for_one(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    with pytest.raises(SystemExit):
+        main(["fit", "liquid", "--help"])
+    out = capsys.readouterr().out
+    assert out.startswith("usage: mjbeer fit FILE liquid [options]\n")
+    assert "--viscosity" in out
+    for words in (["fit", "liquid"], ["fit", "liquid", "--fill", "0.4"]):
+        assert main(words) == 2
+        message = "the following arguments are required: FILE; see `mjbeer fit --help`"
+        assert capsys.readouterr().err == f"mjbeer: {message}\n"
+
+
 def test_no_command_line_loads_what_draws_before_it_is_needed() -> None:
     """Nor the simulator: a mistake and the help are told at once."""
     heavy = "{'mujoco', 'numba', 'scipy', 'matplotlib', 'mjbeer.studies.sweep'}"

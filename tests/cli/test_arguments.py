@@ -116,4 +116,6 @@ def test_a_range_a_list_or_a_number() -> None:
 )
 def test_what_is_none_of_these_is_refused(text: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["sweep", "frozen", "--fill", text]) == 2
-    assert "is no number, no list as 1,2,5, and no range as 1:20:39" in capsys.readouterr().err
+    allowed = "it must be a number, a list such as 1,2,5, or a range such as 1:20:39"
+    message = f"argument --fill: {allowed} (39 numbers from 1 to 20), got {text!r}; "
+    assert capsys.readouterr().err.startswith(f"mjbeer: {message}")

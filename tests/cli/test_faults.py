@@ -45,13 +45,12 @@ def test_a_full_disk_leaves_the_old_file(tmp_path: pathlib.Path) -> None:
     assert os.listdir(tmp_path) == ["motion.csv"]
 
 
-class Begun(Exception):
-    """A command has begun its work."""
+class WorkError(Exception):
+    """What stands in for the work of a command, so that a test knows that it has begun."""
 
 
 def begin(*_: object, **__: object) -> None:
-    """Stand in for the work of a command."""
-    raise Begun
+    raise WorkError
 
 
 WORK = {
@@ -85,7 +84,7 @@ def test_what_cannot_be_written_is_known_before_the_work(
     reason = f"there is no folder {folder}; the nearest one that exists is {tmp_path}"
     assert capsys.readouterr().err == f"mjbeer: cannot write {target}: {reason}\n"
     assert not os.listdir(tmp_path)
-    with pytest.raises(Begun):
+    with pytest.raises(WorkError):
         main([*command, "--output", str(tmp_path / name)])
 
 

@@ -26,17 +26,17 @@ if TYPE_CHECKING:
 
 
 class KeyFigure(NamedTuple):
-    """A quantity of a run that the command tells."""
+    """A quantity of a run that `mjbeer simulate` prints."""
 
     name: str
     value: Any
-    """As JSON has it."""
+    """The value in JSON."""
     unit: str = ""
     shown: str = "{}"
-    """How a text shows it: as a format, or in words that need no value."""
+    """How the text shows the value: a format for it, or words that stand in its place."""
 
     def line(self) -> str | None:
-        """Return the line of a text, or None if there is no number to show."""
+        """Return the line of the text, or None if there is no number to show."""
         if "{" not in self.shown:
             return f"{self.name:<31} {self.shown}"
         if json_values(self.value) is None:
@@ -56,8 +56,8 @@ class Summary:
         self.trajectory = trajectory
         self.friction = friction
         self.rolls_until = math.inf
-        """[s]."""
-        # Where rolling needs no more than there is, the run that looks for that time is saved.
+        """Until when the can would roll without slipping [s]."""
+        # Looking for that time takes a second run, which a can that never slips does not need.
         if trajectory.record.needed_friction > friction:
             self.rolls_until = trajectory.rolls_until(friction)
         self.notes: list[str] = []
@@ -70,7 +70,7 @@ class Summary:
 
     @property
     def key_figures(self) -> list[KeyFigure]:
-        """The figures in the order of the text."""
+        """The key figures in the order in which they are printed."""
         run = self.trajectory
         radius = run.scene.can.radius
         slip = run.slip / radius
@@ -108,7 +108,7 @@ class Summary:
         return KeyFigure("can roll without slipping until", until, "s", shown)
 
     def text(self) -> str:
-        """Return the figures as lines of text, without those that have no number to show."""
+        """Return the figures as lines of text; one that has no number to show is left out."""
         lines = [figure.line() for figure in self.key_figures]
         return "\n".join(line for line in lines if line) + "\n"
 
@@ -124,7 +124,7 @@ def _yes_or_no(name: str, value: bool) -> KeyFigure:
 
 
 def _energy_drift(run: "Run") -> KeyFigure:
-    """Return the drift of the energy, which has no number where damping or drag takes energy."""
+    """Return the drift of the energy; it has no value if damping or drag takes energy."""
     scale = "the swing's largest kinetic energy"
     if not run.scene.load.offset:
         scale = "the largest kinetic energy"
@@ -144,7 +144,7 @@ def _needed_friction(run: "Run") -> KeyFigure:
 
 
 def _steady_rolling(scene: Scene) -> list[KeyFigure]:
-    """Return what takes energy from a motion, and the steady rolling to which it may come."""
+    """Return the damping and the drag of a scene that has any, and how it may come to roll."""
     if not scene.dissipates:
         return []
     figures = [
@@ -171,7 +171,7 @@ def _steady_rolling(scene: Scene) -> list[KeyFigure]:
 
 
 def trajectory_of(given: Namespace) -> "Run":
-    """Simulate the scene that was asked for."""
+    """Simulate the scene of a command line."""
     from mjbeer.simulation.simulate import simulate
 
     thing = scene(given)
