@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from mjbeer import require
 from mjbeer.drawing.camera import CAMERAS
 from mjbeer.exceptions import ParameterError
 from mjbeer.model.setting import LOOKS, MJBEER_INTEGRATORS, MUJOCO_INTEGRATORS, ROLLINGS, Setting
@@ -346,9 +347,12 @@ def scene_arguments(given: Namespace) -> dict[str, Any]:
     Raises:
       ParameterError: if an incline is not allowed; the message has it in degrees.
     """
-    for degrees in np.degrees(getattr(given, "incline", [])).ravel():
-        if not abs(degrees) < 90:
-            raise ParameterError(f"incline must be between -90 and 90 [degrees], got {degrees:.9g}")
+    for incline in np.ravel(getattr(given, "incline", [])):
+        lowest, highest = require.INCLINE
+        if not lowest <= incline <= highest:
+            allowed = f"between {math.degrees(lowest):g} and {math.degrees(highest):g} [degrees]"
+            came = math.degrees(incline)
+            raise ParameterError(f"incline must be {allowed}, got {came:.9g}")
     return {name: getattr(given, name) for name in _MEANINGS if hasattr(given, name)}
 
 
