@@ -234,7 +234,7 @@ def test_a_film_s_command_makes_the_same_motion(name: str) -> None:
 
 @pytest.mark.parametrize("row", MISPRINTS, ids=lambda row: row.equation)
 def test_formulas_are_mathml_without_what_was_not_understood(row) -> None:
-    for latex in (row.misprint.printed, row.misprint.right):
+    for latex in (row.misprint.printed_latex, row.misprint.right_latex):
         shown = page.mathml(latex)
         assert shown.count("<math") >= 1
         assert "\\" not in re.sub("<[^>]*>", "", shown)
