@@ -1,4 +1,4 @@
-"""Disks, folders and streams that take nothing: one line, exit status 2, and no half file."""
+"""Disks, folders and streams that refuse: an error of one line, exit status 2, and no half file."""
 
 import os
 import pathlib
@@ -23,16 +23,17 @@ linux = pytest.mark.skipif(sys.platform != "linux", reason="/dev/full is Linux's
 
 
 def little_disk() -> None:
-    """No file can become longer than 4 KiB, as if the disk were full."""
+    """Let no file become longer than 4 KiB, as if the disk were full."""
     resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
-    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # Python does the same
+    # As in Python, the signal is ignored, so that to write is an error.
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 
 
 def test_a_full_disk_leaves_the_old_file(tmp_path: pathlib.Path) -> None:
-    """The first run has room enough: in it Numba writes its caches.
+    """The first run has room enough, for Numba writes its caches then.
 
-    No bytecode is written: cut off in the checkout, it would end every later run (Python 3.11.2
-    does not notice).
+    Python writes no bytecode: a file of it that was cut off would end every later run, since Python
+    3.11.2 does not notice.
     """
     target = tmp_path / "motion.csv"
     words = ("simulate", *FROZEN, "--output", str(target))
@@ -192,7 +193,7 @@ def test_a_full_standard_output() -> None:
 
 
 def test_a_closed_standard_output(tmp_path: pathlib.Path) -> None:
-    """It is known before the work, of which nothing is left."""
+    """The command notices before the work, and leaves no file."""
     target = tmp_path / "motion.csv"
     words = ["simulate", *FROZEN, "--output", str(target)]
     status, _, err = run(words, preexec_fn=lambda: os.close(1))
@@ -202,7 +203,7 @@ def test_a_closed_standard_output(tmp_path: pathlib.Path) -> None:
 
 @pytest.mark.parametrize("words", [(), ("--output", "-", "--duration", "2")])
 def test_a_reader_that_goes_away(words: tuple[str, ...]) -> None:
-    """Of less and of more than Python and the pipe keep in between."""
+    """One output fits into the buffers of Python and of the pipe, the other does not."""
     reader, writer = os.pipe()
     os.close(reader)
     try:
