@@ -75,6 +75,10 @@ def test_standard_output_has_the_csv_or_the_json_alone(
             "fit can.csv sliding --phi0 up",
             "phi0 must be level, free, or a number [degrees], got 'up'",
         ),
+        (
+            "fit can.csv sliding --phi0 inf",
+            "phi0 must be level, free, or a number [degrees], got 'inf'",
+        ),
         ("benchmark slding", "scene must be one of 'sliding', 'sliding-metal', "),
         ("simulate sliding --incline 87", "incline must be between -85 and 85 [degrees], got 87"),
         ("sweep frozen --incline 1:86:3", "incline must be between -85 and 85 [degrees], got 86"),

@@ -99,22 +99,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         with terminal.printing():
             given = parse(words)
-        # MuJoCo loads the OpenGL that MUJOCO_GL names as soon as it is imported, and fails where
-        # it cannot. Only drawing needs OpenGL, and `drawing.opengl` makes its own context.
-        asked_for = os.environ.get("MUJOCO_GL", "")
-        os.environ["MUJOCO_GL"] = "disable"
-        import mujoco  # noqa: F401
-
-        os.environ["MUJOCO_GL"] = asked_for
+        _import_mujoco()
         with warnings.catch_warnings():
-            # The commands tell in their own words why a run cannot be trusted.
-            warnings.simplefilter("ignore", UntrustedWarning)
-            # It is about degrees that were taken for radians; here angles are in degrees.
-            warnings.simplefilter("ignore", AngleWarning)
-            # A study simulates liquids that are no lump on purpose, and its documents say so.
-            takes_scene = given.command in SCENES_OF
-            warnings.simplefilter("always" if takes_scene else "ignore", LiquidWarning)
-            cast("Any", warnings).showwarning = _show_warning
+            _choose_warnings(given.command)
             return COMMANDS[given.command](given) or 0
     # The system raises an OSError at a limit of its own, such as too many processes.
     except (MjbeerError, OSError) as error:
@@ -127,6 +114,30 @@ def main(arguments: Sequence[str] | None = None) -> int:
         say("mjbeer: interrupted; what was written is whole", "red")
         (signum,) = error.args or (signal.SIGINT,)
         return 128 + signum
+
+
+def _import_mujoco() -> None:
+    """Import MuJoCo without OpenGL.
+
+    When it is imported MuJoCo loads the OpenGL that MUJOCO_GL names, and fails if it cannot. Only
+    drawing needs OpenGL, and `drawing.opengl` then makes a context of its own.
+    """
+    asked_for = os.environ.get("MUJOCO_GL", "")
+    os.environ["MUJOCO_GL"] = "disable"
+    import mujoco  # noqa: F401
+
+    os.environ["MUJOCO_GL"] = asked_for
+
+
+def _choose_warnings(command: str) -> None:
+    """Let Python show the warnings that a command does not tell in its own words, as notes."""
+    warnings.simplefilter("ignore", UntrustedWarning)
+    # This one is about degrees that were taken for radians, and here angles are in degrees.
+    warnings.simplefilter("ignore", AngleWarning)
+    # A study simulates liquids that are no lump on purpose, and its documents say so.
+    takes_scene = command in SCENES_OF
+    warnings.simplefilter("always" if takes_scene else "ignore", LiquidWarning)
+    cast("Any", warnings).showwarning = _show_warning
 
 
 def parse(words: Sequence[str]) -> Namespace:
@@ -159,22 +170,23 @@ def _add_scenes(parser: Parser, command: str) -> None:
     """Add the scenes that may follow a command, with their options."""
     before_scene = parser.prog
     if command == "fit":
-        about = "table of the track, as Tracker or phyphox export it"
-        # Were it not optional here, "fit liquid --help" would take "liquid" for the file.
-        parser.add_argument("file", metavar="FILE", nargs="?", help=about)
+        what = "table of the track, as Tracker or phyphox export it"
+        # If it were not optional here, "fit liquid --help" would take "liquid" for the file.
+        parser.add_argument("file", metavar="FILE", nargs="?", help=what)
         parser.usage = f"{parser.prog} [-h] FILE SCENE ..."
         before_scene += " FILE"
-    below = parser.add_subparsers(
+    parsers = parser.add_subparsers(
         title="scenes", dest="scene", metavar="SCENE", required=True, prog=before_scene
     )
     for scene, make in SCENES_OF[command].items():
-        what = _first_sentence(make)
-        of_scene = below.add_parser(scene, usage="%(prog)s [options]", help=what)
-        of_scene.description = f"{COMMANDS[command].__doc__} The scene: {what}."
-        of_scene.add_options(scene_options(scene, command))
+        about = _first_sentence(make)
+        scene_parser = parsers.add_parser(scene, usage="%(prog)s [options]", help=about)
+        scene_parser.description = f"{COMMANDS[command].__doc__} The scene: {about}."
+        scene_parser.add_options(scene_options(scene, command))
 
 
 def _first_sentence(function: Callable[..., Any]) -> str:
+    """Return the first sentence of a docstring without its stop; of a scene, what the scene is."""
     sentence, *_ = re.split(r"\.(?:\n|$)", str(function.__doc__))
     return sentence.removeprefix("Return ").removeprefix("the scene of ")
 

@@ -4,7 +4,7 @@ import math
 import os
 import tempfile
 import warnings
-from argparse import Namespace
+from argparse import ArgumentTypeError, Namespace
 from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -315,13 +315,11 @@ def fit(given: Namespace) -> None:
         raise ParameterError(
             f"the file's name must end in .svg or .png or .mp4, got {str(output)!r}"
         )
-    try:
-        phi0 = given.phi0 if given.phi0 in ("level", "free") else angle(given.phi0)
-    except ValueError:
-        raise ParameterError(
-            f"phi0 must be level, free, or a number [degrees], got {given.phi0!r}"
-        ) from None
-    columns = dict(column.partition("=")[::2] for column in given.columns)
+    phi0 = _phi0_of_fit(given.phi0)
+    columns = {}
+    for column in given.columns:
+        quantity, _, heading = column.partition("=")
+        columns[quantity] = heading
     track = read_track(given.file, columns, given.rate)
     # A warning about a guess says nothing about the fit.
     with warnings.catch_warnings(action="ignore", category=LiquidWarning):
@@ -347,3 +345,15 @@ def fit(given: Namespace) -> None:
             figure.savefig(temporary, facecolor="white", dpi=150)
     if output:
         say(f"wrote {output}")
+
+
+def _phi0_of_fit(text: str) -> str | float:
+    """Return what a fit takes as phi0: "level", "free", or an angle [rad]."""
+    if text in ("level", "free"):
+        return text
+    try:
+        return angle(text)
+    except (ValueError, ArgumentTypeError):
+        raise ParameterError(
+            f"phi0 must be level, free, or a number [degrees], got {text!r}"
+        ) from None

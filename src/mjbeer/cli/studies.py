@@ -147,7 +147,7 @@ def _counts(result: Any) -> list[str]:
 
 def _write_table(result: Any, path: Path) -> None:
     """Write a sweep as CSV, in SI units and radians; a heading ends with the unit, if any."""
-    # xarray makes no table of a single scene, which has no dimensions: it gets one for a while.
+    # A single scene has no dimensions, and xarray would refuse to make a table of it.
     table = result.expand_dims("scene").to_dataframe().reset_index().drop(columns="scene")
     units = {name: variable.attrs.get("units") for name, variable in result.variables.items()}
     headings = {name: f"{name} [{unit}]" for name, unit in units.items() if unit}
@@ -160,8 +160,8 @@ def _with_degrees(failure: str, result: Any) -> str:
     The line names the scene as "incline[1] = 0.0349066, fill[0] = 0.3".
     """
 
-    def in_degrees(value: re.Match[str]) -> str:
-        name, place = value.groups()
+    def in_degrees(assignment: re.Match[str]) -> str:
+        name, place = assignment.groups()
         angles = _in_degrees(result[name])
         unit = angles.attrs["units"].replace("°", "degrees")
         return f"{name}[{place}] = {angles.values[int(place)]:.6g} {unit}"

@@ -66,6 +66,7 @@ _BOB_59 = "m*s_dot**2/2 + m*b**2*sin(phi)**2*phi_dot**2/2"
 
 
 def _rests(scene: Scene) -> Witness:
+    """Return the witness of a motion without a swing."""
     return simulated(scene, scene.equilibrium())
 
 

@@ -45,9 +45,9 @@ _NORMAL = "m*(g*cos(alpha) + across_ddot)"
 
 @cache
 def _ripple() -> Observation:
-    """Return `ripple`, the amplitudes [m] of cos(k omega t), at index k, in a swing of the beer.
+    """Return `ripple`: at index k, the amplitude [m] of cos(k omega t) in u for a small swing.
 
-    They are those of u less the way that the steady acceleration gives.
+    The distance due to the steady acceleration is subtracted from u first.
     """
     period = 2 * math.pi / oscillate(sliding(), _HESITATION).omega
     times = period * np.arange(64) / 64
@@ -76,7 +76,7 @@ def _furthest_with_push() -> float:
 
 
 def _slope() -> float:
-    """Return the power of Omega as which the ripple of phi at Omega varies over a decade."""
+    """Return the exponent of Omega to which the ripple of phi at Omega is proportional."""
     turns = [loop(sliding(), phi_dot0) for phi_dot0 in _DECADE]
     rates = [turn.Omega for turn in turns]
     amplitudes = [turn.ripple[1] for turn in turns]
@@ -85,7 +85,7 @@ def _slope() -> float:
 
 
 def _synthesis() -> Observation:
-    """Return one turn of phi less Omega t [rad]: simulated, and as the sum of its ripples.
+    """Return phi - Omega t [rad] during one turn, in two ways.
 
     `ahead` is as simulated, and `waves` is the sum of the ripples at Omega to 16 Omega.
     """

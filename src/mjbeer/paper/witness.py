@@ -179,7 +179,7 @@ def loop(scene: Scene, phi_dot0: float) -> Observation:
     """Simulate one turn of a load that loops from phi = 0 with `phi_dot0` [rad/s].
 
     The mean rate is `Omega` [rad/s]. At index k, `ripple` has the amplitude [rad] of sin(k Omega t)
-    in phi - Omega t, and `sway` that [m] in u less the way that the steady acceleration gives.
+    in phi - Omega t, and `sway` that [m] in u less the distance due to the steady acceleration.
     """
     turn = 2 * math.pi / phi_dot0
     for _ in range(8):  # Newton's method for the time of a turn
