@@ -58,6 +58,7 @@ WORK = {
     "simulate frozen": "cli.motions.trajectory_of",
     "render frozen": "cli.motions.trajectory_of",
     "render standing": "drawing.standing_film.StandingFilm.plan",
+    "fit examples/synthetic_track.csv frozen": "tracks.fit.fit",
     "sweep frozen --fill 0.3,0.5": "studies.sweep.sweep",
     "report": "report.page.write",
     "benchmark": "studies.benchmark.timing.run",
@@ -65,7 +66,8 @@ WORK = {
     "paper": "paper.stories.write",
 }
 """The function that does the work of each command."""
-ENDINGS = {"render": ".mp4", "sweep": ".csv"}
+ENDINGS = {"render": ".mp4", "fit": ".svg", "sweep": ".csv"}
+CHECKOUT = pathlib.Path(__file__).parents[2]
 
 
 @pytest.mark.parametrize("words", WORK)
@@ -76,6 +78,7 @@ def test_what_cannot_be_written_is_known_before_the_work(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     """Where the same command can write, it begins its work."""
+    monkeypatch.chdir(CHECKOUT)
     monkeypatch.setattr(f"mjbeer.{WORK[words]}", begin)
     command = words.split()
     name = f"new{ENDINGS.get(command[0], '')}"

@@ -109,14 +109,15 @@ def _mean_acceleration(part: float = 1.0) -> Observation:
     """
     scene = footnote_scene(part)
     run = simulate(scene, 16, math.pi, rolling="equality", integrator="DOP853")
-    moments = []
     angles = []
-    for time in (8.0, 16.0):
-        last = float(np.interp(time, run.time, run.phi))
-        angles.append(2 * math.pi * math.floor((last - math.pi) / (2 * math.pi)))
-        moments.append(float(np.interp(math.pi + angles[-1], run.phi, run.time)))
+    times = []
+    for latest in (8.0, 16.0):
+        turned = float(np.interp(latest, run.time, run.phi)) - math.pi
+        whole_turns = 2 * math.pi * math.floor(turned / (2 * math.pi))
+        angles.append(whole_turns)
+        times.append(float(np.interp(math.pi + whole_turns, run.phi, run.time)))
     # At a constant angular acceleration A the angle is A t^2/2: its square root grows evenly.
-    growth = (math.sqrt(angles[1]) - math.sqrt(angles[0])) / (moments[1] - moments[0])
+    growth = (math.sqrt(angles[1]) - math.sqrt(angles[0])) / (times[1] - times[0])
     return Observation.of(
         scene, acceleration=2 * growth**2 * scene.can.radius, turn=2 * np.pi * np.arange(64) / 64
     )

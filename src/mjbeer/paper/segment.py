@@ -84,7 +84,7 @@ def _segment(fill: float) -> _Segment:
 
 @cache
 def _shell() -> SimpleNamespace:
-    """Return mass [kg] and axial inertia [kg m^2] of a can of sheet metal by MuJoCo."""
+    """Return mass [kg] and axial inertia [kg m^2] of a can of sheet metal, by MuJoCo."""
     spec = mujoco.MjSpec()
     spec.worldbody.add_body(name="can").add_geom(
         type=mujoco.mjtGeom.mjGEOM_CYLINDER,
@@ -118,6 +118,7 @@ def _centre_of_mass() -> SimpleNamespace:
 
 
 def _by_quadrature(*fills: float) -> Witness:
+    """Return the witness of segments of some fills."""
     return Witness("segment quadrature", partial(_segments, *fills))
 
 
