@@ -95,7 +95,7 @@ def test_what_cannot_be_written_is_known_before_the_work(
 def test_an_export_names_the_folder_that_does_not_exist(
     tmp_path: pathlib.Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """To export takes less than a second, so that nothing is looked at before."""
+    """To export takes less than a second, so nothing is checked before."""
     folder = tmp_path / "misspelt"
     target = folder / "can.xml"
     assert main(["export", "frozen", "--output", str(target)]) == 2
@@ -110,9 +110,10 @@ def test_an_export_names_the_folder_that_does_not_exist(
         ("--output film.avi", "the file's name must end in .mp4, got 'film.avi'"),
         ("--width 641", "width must be an even number of pixels up to 4096"),
         ("--height 5000", "height must be an even number of pixels up to 4096"),
+        ("--speed 0", "speed must be greater than 0, got 0"),
     ],
 )
-def test_the_name_and_the_size_of_a_film_are_known_before_the_work(
+def test_the_options_of_a_film_are_checked_before_the_work(
     scene: str,
     options: str,
     message: str,

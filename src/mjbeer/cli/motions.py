@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from mjbeer import require
 from mjbeer.checks.as_json import json_values, to_json
 from mjbeer.cli.arguments import angle, scene, start, steps
 from mjbeer.drawing.words import damping_in_words
@@ -214,7 +215,9 @@ def render(given: Namespace) -> None:
     """
     from mjbeer.drawing import video
 
+    # A mistake is an error before the run, which may take long.
     video.check_target(given.output, given.width, given.height)
+    require.positive("speed", given.speed)
     if given.scene == "standing":
         _render_standing(given)
         return
