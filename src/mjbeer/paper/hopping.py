@@ -89,6 +89,7 @@ def _threshold() -> float:
 
 
 def _hoop(ratio: float) -> Scene:
+    """Return a hoop of the mass ratio M/m on level ground."""
     return hoop(hoop_mass=0.2 * ratio, load_mass=0.2)
 
 
@@ -110,11 +111,12 @@ def takeoff(run: Run) -> float | None:
 
 
 def _lifts_off() -> SimpleNamespace:
+    """Return the angle from the top [rad] at which the hoop lifts off, simulated and by theory."""
     return SimpleNamespace(angle=takeoff(fall(RATIO, GRIP, 2e-5)), theory=lift_off(RATIO))
 
 
 def _skids() -> SimpleNamespace:
-    """Return the angle from the top [rad] at which the rim begins to slide.
+    """Return the angle from the top [rad] at which the rim begins to slide, also by theory.
 
     It counts as sliding above 1e-5 of the largest speed of the axis.
     """
@@ -132,6 +134,7 @@ def _height(rolling: Rolling) -> np.ndarray:
 
 
 def _friction_at_lift_off(ratio: float) -> float:
+    """Return |F|/(m g) when the hoop lifts off, by theory."""
     return abs(friction(ratio, math.pi - lift_off(ratio)))
 
 

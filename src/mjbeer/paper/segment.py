@@ -31,15 +31,15 @@ _SECOND_36 = (
 )
 _THIRD_36 = f"4/3*(3*beta/4 - 3*sin(2*beta)/8 + sin(2*beta)*sin(beta)**2/{{}})/{_TWICE_AREA}"
 _LAST_36 = f"(1 + 2*sin(2*beta)*sin(beta)**2/(3*{_TWICE_AREA}))/2"
-"""I_axis/(m a^2) by the second line of eq. (36), with its integrals evaluated, its third line,
-and its last form."""
+"""I_axis/(m a^2) by three forms of eq. (36): the second line, with its integrals evaluated; the
+third line, with a gap for the divisor, which is 4 and printed 8; and the last form."""
 _LESS_AXIAL = " - (inertia + b**2)"
 """Less I_axis/(m a^2) by quadrature."""
 
 _PAPER = {"a": RADIUS, "l": LENGTH, "t": THICKNESS, "rho": ALUMINIUM, "rho_beer": BEER}
 """Sizes [m] and densities [kg/m^3] by the paper's letters."""
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(40)
-"""Nodes and weights of Gauss quadrature; 24 points would do for the segment's integrals, to
+"""Nodes and weights of Gauss quadrature; 24 points already give the segment's integrals to
 rounding."""
 
 
