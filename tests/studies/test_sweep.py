@@ -202,7 +202,7 @@ def test_units_and_the_call_are_attributes_and_a_run_ends_with_a_whole_timestep(
         0.5,
     )
     assert (swept.make, swept.timestep, swept.duration) == (
-        "mjbeer.theory.scene.frozen",
+        "mjbeer.theory.paper_scenes.frozen",
         3e-3,
         34 * 3e-3,
     )

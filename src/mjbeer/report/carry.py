@@ -16,7 +16,7 @@ from mjbeer.drawing.sheet import INK, Sheet
 from mjbeer.drawing.strip import Chart, ChartStrip, Line
 from mjbeer.model.build import build
 from mjbeer.model.looks import WALL
-from mjbeer.theory.scene import sliding
+from mjbeer.theory.paper_scenes import sliding
 from mjbeer.theory.standing import QUANTITATIVE, Standing, standing
 
 _TIMESTEP = 5e-4

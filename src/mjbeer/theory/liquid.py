@@ -36,7 +36,8 @@ import numpy as np
 from mjbeer import require
 from mjbeer.exceptions import LiquidWarning, NoEquilibriumError, ParameterError, warn_of_liquid
 from mjbeer.theory.can import Can, Damping
-from mjbeer.theory.scene import GRAVITY, INCLINE, Scene, remembers_call, sliding
+from mjbeer.theory.paper_scenes import remembers_call, sliding
+from mjbeer.theory.scene import GRAVITY, INCLINE, Scene
 from mjbeer.theory.segment import Segment, segment
 
 Name = Literal["water", "beer", "olive oil", "glycerol", "honey"]

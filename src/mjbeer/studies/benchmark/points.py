@@ -12,7 +12,8 @@ import numpy as np
 from mjbeer.checks.as_json import document
 from mjbeer.model.setting import Rolling
 from mjbeer.theory.can import Can
-from mjbeer.theory.scene import Scene, frozen, pendulum, sliding
+from mjbeer.theory.paper_scenes import frozen, pendulum, sliding
+from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory, exact
 
 COMMAND = "mjbeer benchmark"

@@ -18,7 +18,8 @@ from mjbeer.model.setting import MUJOCO_INTEGRATORS, ROLLINGS, supported
 from mjbeer.studies.stability.judge import Trial
 from mjbeer.theory.can import Can, Damping, Load
 from mjbeer.theory.liquid import NAMES, liquid
-from mjbeer.theory.scene import ATTACHMENTS, GRAVITY, Scene, frozen, hoop, pendulum, sliding
+from mjbeer.theory.paper_scenes import frozen, hoop, pendulum, sliding
+from mjbeer.theory.scene import ATTACHMENTS, GRAVITY, Scene
 
 T = TypeVar("T")
 _SWINGS = 400.0
