@@ -13,7 +13,10 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Generator, Mapping, Sequence
-from typing import Any, NamedTuple, TextIO
+from typing import TYPE_CHECKING, Any, NamedTuple, TextIO
+
+if TYPE_CHECKING:
+    from mjbeer import Trajectory
 
 PATIENCE = 600.0
 """Time after which a process is taken to hang [s]: a guard, which no machine is slow enough to
@@ -94,6 +97,11 @@ def interrupt(
 def where() -> dict[str, Any]:
     """Return in which process this is."""
     return {"process": os.getpid()}
+
+
+def highest(trajectory: "Trajectory") -> float:
+    """Return the largest phi of a motion [rad], as a quantity of a sweep."""
+    return float(trajectory.phi.max())
 
 
 def work_and_sleep() -> dict[str, Any]:
