@@ -62,11 +62,11 @@ def period(scene: Scene, amplitude: float | Any) -> Any:
     )
     centre = (one + other) / 2
     width = abs(one - other) / 2
+    energy = taylor.height(form, one)
 
     def rate(phase: Any) -> Any:
-        phi = centre + width * mp.sin(phase)
-        slowness = mp.sqrt(taylor.inertia(form, phi) / (2 * taylor.fall(form, one, phi)))
-        return width * mp.cos(phase) * slowness
+        cos, sin = mp.cos_sin(phase)
+        return width * cos * taylor.slowness(form, energy, centre + width * sin)
 
     # Halved towards the ends, where a barrier may be as near as 1e-10 rad, which is 1e-5 of the
     # phase.
@@ -388,9 +388,10 @@ def error_of_a_fall(scene: Scene, phi0: float, phi: float, time: float) -> float
         if turned * beside <= 0:  # it fell to the other side
             return math.inf
 
+        energy = taylor.height(form, begin)
+
         def slowness(root: Any) -> Any:
-            angle = begin + mp.sign(turned) * root**2
-            return mp.sqrt(taylor.inertia(form, angle) / (2 * taylor.fall(form, begin, angle)))
+            return taylor.slowness(form, energy, begin + mp.sign(turned) * root**2)
 
         end = mp.sqrt(abs(turned))
         pieces = {k * end / 8 for k in range(9)}
