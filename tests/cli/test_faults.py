@@ -164,6 +164,10 @@ def test_old_results_stay_if_a_command_is_interrupted_at_its_end(
     stubs.draw(monkeypatch)
     study = Study("mjbeer stability", {"quick": True}, {})
     monkeypatch.setattr("mjbeer.studies.benchmark.timing.run", lambda *_: Benchmark.load(SHIPPED))
+    monkeypatch.setattr(
+        "mjbeer.studies.benchmark.work_precision.draw",
+        lambda _, path: files.write(path.with_suffix(".svg"), "a diagram"),
+    )
     monkeypatch.setattr("mjbeer.studies.stability.stability_study.run", lambda *_: study)
     monkeypatch.setattr("mjbeer.studies.stability.stability_maps.figures", lambda _: {})
     words = [command, "--output", str(tmp_path)]

@@ -27,7 +27,8 @@ from mjbeer.paper.witness import (
     simulated,
 )
 from mjbeer.simulation.simulate import simulate
-from mjbeer.theory.scene import Scene, frozen
+from mjbeer.theory.paper_scenes import frozen
+from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import exact
 
 _CREEP = 1e-3

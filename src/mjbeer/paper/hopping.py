@@ -18,7 +18,8 @@ from mjbeer.paper.claim import Bound, Claim, Limit, Witness
 from mjbeer.paper.witness import CONTACT, GRIP
 from mjbeer.simulation.run import Run
 from mjbeer.simulation.simulate import simulate
-from mjbeer.theory.scene import Scene, hoop
+from mjbeer.theory.paper_scenes import hoop
+from mjbeer.theory.scene import Scene
 
 RATIO = 1 / 20  # M/m of the hoop that hops
 MU = 0.8  # friction coefficient of the hoop that skids: the kinetic one in the paper's last figure

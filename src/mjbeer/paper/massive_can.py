@@ -22,7 +22,8 @@ from mjbeer.paper.witness import (
     simulated,
 )
 from mjbeer.theory.can import Can
-from mjbeer.theory.scene import Scene, pendulum, sliding
+from mjbeer.theory.paper_scenes import pendulum, sliding
+from mjbeer.theory.scene import Scene
 
 _KINETIC_39 = (
     "rolling/2*s_dot**2 + rolling*b*cos(phi)*s_dot*phi_dot + rolling/2*b**2*cos(phi)**2*phi_dot**2"

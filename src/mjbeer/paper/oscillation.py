@@ -17,7 +17,8 @@ from mjbeer.paper.claim import (
 )
 from mjbeer.paper.witness import EXACT, REDUCED, TENTH, loop, oscillate, simulated
 from mjbeer.simulation.simulate import simulate
-from mjbeer.theory.scene import INCLINE, sliding
+from mjbeer.theory.paper_scenes import sliding
+from mjbeer.theory.scene import INCLINE
 
 FAST = 350.0
 """phi_dot [rad/s] at phi = 0 of a load that loops fast: nine times the least at which one loops."""

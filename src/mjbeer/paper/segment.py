@@ -18,7 +18,7 @@ import numpy as np
 from mjbeer.model.build import build
 from mjbeer.paper.claim import Bound, Claim, Misprint, Witness
 from mjbeer.theory.can import ALUMINIUM, BEER, LENGTH, RADIUS, THICKNESS, Can
-from mjbeer.theory.scene import sliding
+from mjbeer.theory.paper_scenes import sliding
 
 FILLS = (0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95)
 """Fills at which the formulas of section 3 are compared with quadrature, on both sides of a

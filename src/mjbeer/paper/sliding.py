@@ -17,7 +17,7 @@ from mjbeer.paper.witness import (
     simulated,
 )
 from mjbeer.theory.can import Can
-from mjbeer.theory.scene import sliding
+from mjbeer.theory.paper_scenes import sliding
 
 EQ_6 = "m*b*g*cos(alpha)/inertia"
 """omega^2 [1/s^2] of small swings."""

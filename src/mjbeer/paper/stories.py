@@ -19,7 +19,7 @@ from mjbeer.output.jobs import Job
 from mjbeer.output.plots import chart
 from mjbeer.paper import story_plots
 from mjbeer.paper.story_plots import SWING
-from mjbeer.theory.scene import frozen, sliding
+from mjbeer.theory.paper_scenes import frozen, sliding
 
 SIZE = (768, 432, 25)
 """Width and height [pixels] and pictures per second of a film; a page shows it at most 768 pixels

@@ -26,7 +26,8 @@ from mjbeer.paper.hopping import MU
 from mjbeer.paper.oscillation import SLOW
 from mjbeer.paper.witness import GRIP, loop
 from mjbeer.simulation.simulate import simulate
-from mjbeer.theory.scene import Scene, frozen, sliding
+from mjbeer.theory.paper_scenes import frozen, sliding
+from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory, exact
 
 SWING = math.radians(60)

@@ -14,7 +14,8 @@ from mjbeer.paper.claim import Bound, Observation, Witness
 from mjbeer.simulation.run import Run
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import Can, Load
-from mjbeer.theory.scene import Scene, frozen, pendulum, sliding
+from mjbeer.theory.paper_scenes import frozen, pendulum, sliding
+from mjbeer.theory.scene import Scene
 
 
 def simulated(scene: Scene, phi0: float, *more: Any, **settings: Any) -> Witness:
