@@ -52,7 +52,8 @@ class Formulas(Extension):
 
 def display_formula(latex: str, *_: object, **__: object) -> str:
     """Return the MathML of a formula that stands by itself, its number apart."""
-    return mathml(latex.replace(r"\tag", r"\qquad\tag"), display="block")
+    shown = mathml(latex.replace(r"\tag", r"\qquad\tag"), display="block")
+    return f'<div class="formula">{shown}</div>'
 
 
 def mathml(latex: str, display: str = "inline") -> str:
