@@ -3,7 +3,7 @@
 import math
 import os
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +13,9 @@ from mjbeer.simulation.run import Run
 from mjbeer.theory.scene import Scene
 from mjbeer.tracks.track import Track
 from mjbeer.tracks.unknowns import FITTABLE
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 _LAW_ERROR = 0.1
 """Relative error of a liquid's damping law itself, that of W^1.5 and its polynomial."""
@@ -92,7 +95,7 @@ class Fit:
 
     __repr__ = __str__
 
-    def plot(self) -> tuple[Any, ...]:
+    def plot(self) -> "tuple[Axes, ...]":
         """Plot track and model, their difference in mm, and the speed in a new figure.
 
         Returns the axes.
