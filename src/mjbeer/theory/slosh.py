@@ -3,7 +3,8 @@
 The liquid has no viscosity, but for its damping, and its surface tilts by small angles. In a
 cross-section, x is level, y points upwards, and the surface reaches from x = -c to x = c. The can
 has the radius a and the length l, the liquid the density rho and the mass m; b is the distance of
-its centre of mass from the axis. The modes in which the surface is even in x move no mass sideways, and are left out.
+its centre of mass from the axis. The modes in which the surface is even in x move no mass sideways,
+and are left out.
 
 **The surface.** The wall is a circle, so that the pressure on any part of it acts along a line
 through the axis. It does not matter how the can turns, only how far its axis has moved: by u. In
