@@ -194,9 +194,9 @@ class Trajectory(Coordinates):
         Raises:
           ParameterError: if there is no quantity of a name; the message lists the names.
         """
-        from mjbeer.drawing import words
+        from mjbeer.drawing import plot
 
-        return words.plot(self, *names, theory=theory)
+        return plot.plot(self, *names, theory=theory)
 
     def video(
         self,
