@@ -123,7 +123,7 @@ def test_the_page_has_the_frequencies_of_a_half_full_can() -> None:
     assert (round(10 / found, 1), round(10 / paper, 1)) == (2.2, 3.3)
     arm = beer.load.moment / beer.effective_mass
     assert round(1e3 * arm * 2 * SWING, 1) == 3.8
-    run = simulate(liquid("beer", incline=0.0, fill=0.5), 1.0, 0.1, tolerance=1e-6)
+    run = simulate(liquid("beer", incline=0.0, fill=0.5), 1.0, 0.05, tolerance=1e-6)
     assert round(run.frequency() / math.tau, 1) == 4.8
 
 
