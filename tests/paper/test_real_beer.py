@@ -16,7 +16,16 @@ from mjbeer.theory.liquid import FILM_LOAD, LIQUIDS
 from mjbeer.theory.scene import GRAVITY
 
 sys.path.append(str(pathlib.Path(__file__).parents[2] / "docs" / "figures"))
-from real_beer import CAN, DRAG, SWING, let_go, over_first_metre, times_of, water_in
+from real_beer import (
+    CAN,
+    DRAG,
+    SWING,
+    capillary_length,
+    let_go,
+    over_first_metre,
+    times_of,
+    water_in,
+)
 
 pytestmark = pytest.mark.slow
 
@@ -135,6 +144,9 @@ def test_the_page_has_the_damping_of_a_half_full_can() -> None:
     ratios = modes.damping_ratios(CAN.radius, CAN.length, GRAVITY, nu)
     assert round(ratios.layers, 4) == 0.0015
     assert round(1 - modes.energy_shares[0], 2) == 0.11
+    # The wavenumber of waves on deep water that are as fast.
+    wavenumber = 1 / (CAN.radius * modes.lengths[0])
+    assert round((capillary_length() * wavenumber) ** 2 / 2, 3) == 0.025
 
     def damping(name: str, incline: float) -> float:
         with warnings.catch_warnings(action="ignore", category=LiquidWarning):
