@@ -196,5 +196,5 @@ def test_a_liquid_that_is_no_lump_any_more_is_a_warning() -> None:
     assert (run.trusted, run.solver_warnings, run.rolling_warnings) == (False, (), ())
     speed = float(np.interp(run.record.no_lump_at, run.time, np.abs(run.u_dot)))
     limit = math.sqrt(scene.can.radius * scene.gravity * math.cos(scene.incline))
-    # To a timestep of 1 ms, in which it gains less than 2 mm/s.
-    assert speed == pytest.approx(limit, abs=2e-3)
+    # To a timestep of 1 ms, in which it gains less than 3 mm/s.
+    assert speed == pytest.approx(limit, abs=3e-3)
