@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from matplotlib import pyplot as plt
 
-from mjbeer import Damping, exact, frozen, pendulum, simulate, sliding
+from mjbeer import Can, Damping, exact, frozen, liquid, pendulum, simulate, sliding
 from mjbeer.drawing.words import damping_in_words, in_words
 from mjbeer.exceptions import ParameterError
 
@@ -100,6 +100,9 @@ def test_a_run_is_one_line_and_does_not_run_again(monkeypatch: pytest.MonkeyPatc
 
 def test_a_scene_in_words() -> None:
     assert in_words(frozen()) == "half-full massless can, beer frozen, incline 10°"
+    can = Can.sheet_metal()
+    water = liquid("water", math.radians(2), 0.75, can)
+    assert in_words(water) == "three-quarters-full can of 8.57 g, water, incline 2°"
     assert in_words(pendulum(0.0)) == "wheel with a pendulum, M = 200 g, m = 100 g, level ground"
     assert (
         damping_in_words(sliding(damping=Damping(1e-5, 0.0, 2e-8)))

@@ -27,7 +27,7 @@ def in_words(scene: Scene) -> str:
     law = scene.damping_law
     if law == Damping(law.linear) and law:
         parts.append(f"damping {law.linear:.3g} N m s")
-    elif law:
+    elif law and not law.liquid:
         parts.append("damped")
     if scene.drag:
         parts.append(f"drag {scene.drag:.3g} kg/m")
@@ -37,7 +37,8 @@ def in_words(scene: Scene) -> str:
 
 def _beer_in_words(scene: Scene, fill: float) -> list[str]:
     full = _FILLS.get(fill, f"{100 * fill:.3g} % full")
-    return [f"{full} {_can_in_words(scene)}", f"beer {scene.attachment}"]
+    contents = scene.damping_law.liquid or f"beer {scene.attachment}"
+    return [f"{full} {_can_in_words(scene)}", contents]
 
 
 def _load_in_words(scene: Scene) -> list[str]:

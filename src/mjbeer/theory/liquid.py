@@ -28,7 +28,7 @@ fast as the lump swings.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, NamedTuple, get_args
 
 import numpy as np
@@ -209,7 +209,7 @@ def liquid_in(
         law=fitted.law,
         slip_rate=steady_rate,
         carried=_share_in_film(coating_rate, steady_rate),
-        damping=_damping(laws, fitted, coating_rate),
+        damping=replace(_damping(laws, fitted, coating_rate), liquid=name),
     )
 
 
