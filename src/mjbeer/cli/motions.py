@@ -319,7 +319,7 @@ def fit(given: Namespace) -> None:
             f"phi0 must be level, free, or a number [degrees], got {given.phi0!r}"
         ) from None
     columns = dict(column.partition("=")[::2] for column in given.columns)
-    track = read_track(given.file, columns, given.rate)
+    track = read_track(given.file, columns, given.rate, given.scale, given.marks or None)
     with warnings.catch_warnings(action="ignore", category=LiquidWarning):  # of a guess
         guess = scene(given)
     with files.atomic_write(output) if output else nullcontext() as temporary:
