@@ -4,6 +4,9 @@ import inspect
 import json
 import math
 import pathlib
+import re
+import shlex
+import shutil
 from types import SimpleNamespace
 from typing import Any
 from unittest import mock
@@ -372,3 +375,31 @@ def test_the_validation_finds_errors_that_are_too_small(
     )
     monkeypatch.setattr(track_checks, "fitted", mock.Mock(return_value=pretended))
     assert check.result().passed == passes
+
+
+NUMBER = re.compile(r"\d+\.?\d*")
+
+
+def test_the_page_shows_what_its_command_prints(
+    tmp_path: pathlib.Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """Its words are those that are printed; a last digit may be another on another machine."""
+    checkout = pathlib.Path(__file__).parents[2]
+    page = (checkout / "docs" / "your-video.md").read_text()
+    blocks = re.findall(r"^```console\n(.*?)^```", page, re.DOTALL | re.MULTILINE)
+    monkeypatch.chdir(tmp_path)
+    shutil.copytree(checkout / "examples", "examples")
+    for block in blocks:
+        command, *shown = block.splitlines()
+        assert main(shlex.split(command.removeprefix("$ mjbeer "))) == 0
+        printed = capsys.readouterr()
+        lines = [*printed.err.splitlines(), *printed.out.splitlines()]
+        for line in shown:
+            alike = [other for other in lines if NUMBER.sub("#", other) == NUMBER.sub("#", line)]
+            assert alike, line
+            numbers = zip(NUMBER.findall(line), NUMBER.findall(alike[0]), strict=True)
+            for on_page, now in numbers:
+                _, _, decimals = on_page.partition(".")
+                assert abs(float(on_page) - float(now)) < 1.5 * 10 ** -len(decimals), line

@@ -71,7 +71,7 @@ class Fit:
             return f"incline, less rolling resistance: {line}"
         if name == "damping":
             of_law = f"± {LAW_ERROR * value:.2g} of the law itself"
-            return f"damping over its law: {line}, and {of_law}"
+            return f"damping as a multiple of its law: {line}, and {of_law}"
         return f"{name}: {line}"
 
     @property
