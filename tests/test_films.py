@@ -7,8 +7,8 @@ import pytest
 
 from mjbeer import exact, simulate
 from mjbeer.drawing.film import Film, MotionFilm
+from mjbeer.drawing.quantities import mean_forces
 from mjbeer.drawing.race import Race
-from mjbeer.drawing.strip import mean_forces
 from mjbeer.drawing.words import in_words
 from mjbeer.paper import stories
 from mjbeer.report import films

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from mjbeer import exact, frozen, hoop, sliding
 from mjbeer.drawing.camera import (
+    AROUND,
     CAMERAS,
     Camera,
     CameraPath,
@@ -31,23 +32,31 @@ PLACES = st.floats(-1, 1)
 def test_across_the_axis_all_is_seen_to_scale_and_nothing_leans(
     x: float, z: float, y: float, other: float
 ) -> None:
-    """2000 pixels for a metre in each direction, whatever the eye's height is.
+    """A metre has 2000 pixels in each direction, whatever the eye's height is.
 
     Plumb lines are plumb at any depth.
     """
-    place = VIEW.pixel(CENTRE + np.array([x, 0.0, z]))
+    point = CENTRE + np.array([x, 0.0, z])
+
+    place = VIEW.pixel(point)
+    corner = VIEW.pixel(np.array([x, y, z]))
+    above = VIEW.pixel(np.array([x, y, other]))
+    beside = VIEW.pixel(np.array([other, y, z]))
+
     assert place == pytest.approx([800 + 2000 * x, 450 - 2000 * z], abs=ROUNDING)
-    assert VIEW.scale(CENTRE + np.array([x, 0.0, z])) == pytest.approx(2000)
-    corner, plumb, level = VIEW.pixel(np.array([[x, y, z], [x, y, other], [other, y, z]]))
-    assert (corner[0], corner[1]) == pytest.approx((plumb[0], level[1]), abs=ROUNDING)
+    assert VIEW.scale(point) == pytest.approx(2000)
+    assert above[0] == pytest.approx(corner[0], abs=ROUNDING)
+    assert beside[1] == pytest.approx(corner[1], abs=ROUNDING)
 
 
 @pytest.mark.parametrize("pixels", [(400, 300), (300, 400), (1200, 100)])
 def test_a_view_towards_points_just_holds_them(pixels: tuple[int, int]) -> None:
     points = np.random.default_rng(1).uniform(-1, 1, (50, 3))
-    view = View.towards(np.array([0.5, -6.0, 4.0]), points, pixels, 20, margin=0.0)
+
+    view = View.towards(np.array([0.5, -6.0, 4.0]), points, pixels, top=20, margin=0.0)
+
     places = view.pixel(points) - [0, 20]
-    # One of the sides is full, and nothing is outside.
+    # The picture is filled in one direction, and nothing is outside.
     assert (places > -1e-6).all()
     assert (places < np.array(pixels) + 1e-6).all()
     assert max(np.ptp(places, axis=0) / pixels) == pytest.approx(1.0)
@@ -76,19 +85,30 @@ def followed(name: str, camera: Camera) -> CameraPath:
 @pytest.mark.parametrize("name", MOTIONS)
 def test_the_can_is_in_the_picture_at_all_times(name: str, camera: Camera) -> None:
     motion = MOTIONS[name]
-    view = followed(name, camera).view
+
+    path = followed(name, camera)
+
     for time, u in zip(TIMES, motion.u, strict=True):
         centre = on_incline(motion.scene, u * scale(motion.scene), RADIUS)
-        places = view(time).pixel(np.insert(centre + circle(RADIUS), 1, PLANE, axis=1))
+        rim = np.insert(centre + circle(RADIUS), 1, PLANE, axis=1)
+        places = path.view(time).pixel(rim)
         assert (places > 0).all()
         assert (places < WIDE).all()
 
 
-def test_the_camera_pans_where_the_can_would_be_small_and_else_fills_what_it_may() -> None:
-    for name, stands in (("rocks", True), ("swings downhill", False), ("stays", True)):
-        path = followed(name, "auto")
-        assert path.still is stands
-        assert np.array_equal(path.view(0.0).eye, path.view(1.0).eye) is stands
-    view = followed("stays", "auto").view
-    pixels = RADIUS * view(0.0).scale(np.array([0.0, PLANE, 0.0]))
-    assert pixels == pytest.approx(WIDE[1] / 3.8, rel=1e-9)
+@pytest.mark.parametrize(
+    ("name", "stands"), [("rocks", True), ("swings downhill", False), ("stays", True)]
+)
+def test_the_camera_pans_where_the_can_would_be_small(name: str, stands: bool) -> None:
+    path = followed(name, "auto")
+
+    moves = not np.array_equal(path.view(0.0).eye, path.view(1.0).eye)
+    assert path.still is stands
+    assert moves is not stands
+
+
+def test_a_can_that_stays_fills_the_picture_but_for_the_room_around_it() -> None:
+    view = followed("stays", "auto").view(0.0)
+
+    radius = RADIUS * view.scale(np.array([0.0, PLANE, 0.0]))
+    assert radius == pytest.approx(WIDE[1] / (2 * AROUND), rel=1e-9)

@@ -18,10 +18,13 @@ from mjbeer.theory.standing import QUANTITATIVE, Standing
     ids=repr,
 )
 def test_the_liquid_is_let_go_and_rings_as_theory_says(can: Standing) -> None:
-    """After half a second the error is that of a pendulum: its period is longer by the 16th of the
-    square of its angle, 0.12 rad, so that the phase lags by 9e-4 of some 12 rad, and the rise by
-    1.1e-3 R."""
+    """Theory is linear, and the model's modes are pendulums.
+
+    The period of a pendulum is longer by the 16th part of the square of its angle, here 0.12 rad.
+    After half a second the phase lags by 9e-4 of some 12 rad, and the rise by 1.1e-3 R.
+    """
     motion = slosh(can, build(can, free=False), 0.5)
+
     assert motion.rise[0] == pytest.approx(QUANTITATIVE, rel=1e-12)
     assert np.abs(motion.rise - free_decay(can, motion.time)).max() < 1.1e-3
     # The liquid swings to the other side, and is damped.
@@ -32,19 +35,26 @@ def test_the_liquid_is_let_go_and_rings_as_theory_says(can: Standing) -> None:
 @pytest.mark.draws
 @pytest.mark.slow
 def test_the_surface_is_seen_to_tilt() -> None:
-    """Half a period later the liquid is as high at the other side: what changes is to the left and
-    to the right of the axis, with opposite signs."""
+    """Half a period later the liquid is as high at the other side.
+
+    So the picture loses beer at the right of the axis, and gains it at the left.
+    """
     can = standing("water")
     half_period = np.pi / can.frequencies()[0]
     plan = StandingFilm(can, half_period, speed=1.0).plan()
-    times = np.array([0.0, half_period])
-    right, left = (picture.astype(float) for picture in plan.draw(times, 640, 480))
-    # Only the scene, between title and chart; blue, which the beer lacks, tells it from the wall.
-    beer = [(picture[90:320, :, 2] < 120).sum(axis=0) for picture in (right, left)]
-    gained = beer[0].astype(float) - beer[1]
+
+    first, last = plan.draw(np.array([0.0, half_period]), 640, 480)
+
+    gained = beer_in_columns(last) - beer_in_columns(first)
     middle = 320
-    assert gained[middle + 8 :].sum() > 100
-    assert gained[: middle - 8].sum() < -100
+    assert gained[: middle - 8].sum() > 100
+    assert gained[middle + 8 :].sum() < -100
+
+
+def beer_in_columns(picture: np.ndarray) -> np.ndarray:
+    """Return how many pixels of beer each column has between the title and the chart."""
+    blue = picture[90:320, :, 2]
+    return (blue < 120).sum(axis=0)  # beer is the only thing there with so little blue
 
 
 @pytest.mark.draws
@@ -56,7 +66,10 @@ def test_the_command_line_draws_a_standing_can(
     words = (
         "render standing --fill 0.3 --modes 0 --duration 0.2 --speed 0.5 --width 160 --height 120"
     )
-    assert main([*words.split(), "--output", str(path)]) == 0
+
+    status = main([*words.split(), "--output", str(path)])
+
+    assert status == 0
     frames, _ = imageio_ffmpeg.count_frames_and_secs(str(path))
     assert frames == 12  # 0.2 s, slowed down twice, at 30 per second
     assert "nothing moves in this film, because the liquid is solid" in capsys.readouterr().err
@@ -77,6 +90,9 @@ def test_what_a_standing_can_does_not_have_is_refused(
     words: str, message: str, tmp_path: pathlib.Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     given = ["--output", str(tmp_path / "can.mp4"), *words.split()]
-    assert main(["render", "standing", *given]) == 2
+
+    status = main(["render", "standing", *given])
+
+    assert status == 2
     assert message in capsys.readouterr().err
     assert not list(tmp_path.iterdir())

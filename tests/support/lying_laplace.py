@@ -27,6 +27,10 @@ NODES = 80
 """Number of Gauss's nodes on each panel of the boundary."""
 FINER = 0.3
 """Length of a panel divided by that of the one before it, which is farther from the corner."""
+RAYS = 16
+"""Number of rays from the middle of the surface to a panel of the wall, and of nodes on a ray."""
+APART = 1e-5
+"""Distance of points whose slopes give the second derivatives."""
 
 
 class Motion(NamedTuple):
@@ -38,6 +42,20 @@ class Motion(NamedTuple):
     """Force on a held can, as the mass of a pendulum divided by that of the liquid."""
     energy_shares: np.ndarray
     """Shares that the modes have of the energy of a surface that is flat and tilted."""
+
+
+class Losses(NamedTuple):
+    """Integrals over the flow of the slowest mode; the square of its elevation has the integral 1.
+
+    Velocities are divided by omega.
+    """
+
+    wall: float
+    """Of the square of the slip along the wall."""
+    end: float
+    """Of the square of the slip along an end."""
+    bulk: float
+    """Of the squares of phi_xx and phi_xy."""
 
 
 class Section:
@@ -61,10 +79,15 @@ class Section:
         flux = slopes.real * normal.imag + slopes.imag * normal.real
         stiffness = (potential * weights) @ flux.T
         sloping = (potential * weights)[:, on_wall:]
+        self.corner = corner
+        self.boundary = points
+        self.weights = weights
+        self.on_wall = on_wall
         # Coordinates in which the stiffness is 1.
         factor = linalg.cholesky((stiffness + stiffness.T) / 2, lower=True)
         surfaces = sloping @ potential[:, on_wall:].T
         half_way = linalg.solve_triangular(factor, surfaces, lower=True)
+        self.factor = factor
         self.surface = linalg.solve_triangular(factor, half_way.T, lower=True)
         pressure = (potential * weights)[:, :on_wall] @ wall.imag
         self.pressure = linalg.solve_triangular(factor, pressure, lower=True)
@@ -73,6 +96,13 @@ class Section:
 
     def modes(self, can_ratio: float) -> Motion:
         """Modes in a can whose m_can + I_can/a^2 is `can_ratio` times the liquid's mass."""
+        values, potentials = self._potentials(can_ratio)
+        masses = (self.pressure @ potentials) ** 2 / self.area
+        shares = (self.tilt @ potentials) ** 2 / (values * self.tilt_energy)
+        return Motion(1 / values, masses, shares)
+
+    def _potentials(self, can_ratio: float) -> tuple[np.ndarray, np.ndarray]:
+        """The g/(omega^2 a) of the modes, and a column for the potential of each."""
         added = self.pressure @ self.pressure
         can = can_ratio * self.area
         # The stiffness is 1 + p p^T/can; this is the inverse of its root.
@@ -84,14 +114,57 @@ class Section:
         moves = values > 1e-3 * values[-1]
         values = values[moves][::-1]
         potentials = root @ vectors[:, moves][:, ::-1]
-        masses = (self.pressure @ potentials) ** 2 / self.area
-        shares = (self.tilt @ potentials) ** 2 / (values * self.tilt_energy)
-        return Motion(1 / values, masses, shares)
+        return values, potentials
+
+    def losses(self, can_ratio: float) -> Losses:
+        """What the slowest mode loses in a can as of `modes`, which must have mass.
+
+        By nodes on the wall and all over the cross-section, in the frame of the ground.
+        """
+        _, potentials = self._potentials(can_ratio)
+        slowest = potentials[:, 0]
+        axis = -(self.pressure @ slowest) / (can_ratio * self.area)
+        wall = self.boundary[: self.on_wall]
+        along_wall = self.weights[: self.on_wall]
+        inside, areas = self._inside()
+        points = np.concatenate([self.boundary, inside, inside + APART, inside - APART])
+        weights = np.append(self.weights, np.zeros(3 * len(inside)))
+        _, slopes = _harmonic(points, weights, self.corner)
+        slope = linalg.solve_triangular(self.factor, slowest, lower=True, trans="T") @ slopes
+        surface = slice(self.on_wall, len(self.boundary))
+        within, above, below = np.split(slope[len(self.boundary) :], 3)
+        curvature = (above - below) / (2 * APART)
+
+        def slip(slope: np.ndarray, points: np.ndarray) -> np.ndarray:
+            """Square of the velocity relative to a can that rolls, which rests at the bottom."""
+            along = slope.real - axis * (1 + points.real)
+            upwards = slope.imag + axis * points.imag
+            return along**2 + upwards**2
+
+        scale = self.weights[surface] @ slope[surface].imag ** 2
+        return Losses(
+            wall=along_wall @ slip(slope[: self.on_wall], wall) / scale,
+            end=areas @ slip(within, inside) / scale,
+            bulk=areas @ abs(curvature) ** 2 / scale,
+        )
+
+    def _inside(self) -> tuple[np.ndarray, np.ndarray]:
+        """Nodes all over half of the cross-section, and their areas."""
+        distance, weights = _towards_a_corner(RAYS)
+        beta = abs(np.angle(-self.corner))
+        wall = -np.exp(-1j * beta * (1 - distance))
+        middle = self.corner.real
+        rays = wall - middle
+        across = (rays * wall.conj()).real * beta * weights
+        nodes, shares = roots_legendre(RAYS)
+        along = (nodes + 1) / 2
+        areas = np.outer(shares / 2 * along, across)
+        return (middle + np.outer(along, rays)).ravel(), areas.ravel()
 
 
-def _towards_a_corner() -> tuple[np.ndarray, np.ndarray]:
+def _towards_a_corner(count: int = NODES) -> tuple[np.ndarray, np.ndarray]:
     """Nodes between 0 and 1, finer towards 0, and their weights."""
-    nodes, weights = roots_legendre(NODES)
+    nodes, weights = roots_legendre(count)
     ends = np.append(FINER ** np.arange(PANELS), 0.0)
     middles = (ends[:-1] + ends[1:]) / 2
     halves = (ends[:-1] - ends[1:]) / 2

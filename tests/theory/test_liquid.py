@@ -2,6 +2,7 @@
 and the scenes."""
 
 import math
+import re
 import warnings
 
 import numpy as np
@@ -9,9 +10,10 @@ import pytest
 from scipy.integrate import solve_bvp
 from scipy.optimize import brentq
 
-from mjbeer import LiquidWarning, exact, liquid, sliding
-from mjbeer.theory.equations import slip_rate_of
-from mjbeer.theory.liquid import ENDS, FILM_LOAD, WALL, liquid_in, lump_warning
+from mjbeer import Can, LiquidWarning, Load, Scene, exact, liquid, sliding
+from mjbeer.theory import slosh
+from mjbeer.theory.equations import accelerations, resting_tilt, slip_rate_of
+from mjbeer.theory.liquid import ENDS, FILM_LOAD, LIQUIDS, WALL, liquid_in, lump_warning
 from mjbeer.theory.segment import segment
 from tests.support.scenes import METAL
 
@@ -112,20 +114,105 @@ OTHER_VISCOSITIES = 0.15
 def test_liquids_roll_as_estimated(name: str, speed: float) -> None:
     scene = liquid(name)
     used = liquid_in(name)
-    # Olive oil rolls more slowly than the swing slips for which its law is fitted.
-    allowed = FIT_ERROR if name == "olive oil" else ROUNDING
-    assert scene.terminal_speed() == pytest.approx(used.slip_rate * 0.033, rel=allowed)
+    assert scene.terminal_speed() == pytest.approx(used.slip_rate * 0.033, rel=ROUNDING)
     assert scene.terminal_speed() == pytest.approx(speed, rel=OTHER_VISCOSITIES)
     assert used.law == ("creep" if name == "honey" else "thin layers")
 
 
-def test_a_swing_has_stokes_layers() -> None:
-    used = liquid_in("water", incline=0.0, viscosity=1e-6, density=1000.0)
+def test_a_thick_liquid_swings_with_stokes_layers() -> None:
+    used = liquid_in("glycerol", incline=0.0, viscosity=1e-3, density=1000.0)
     omega = sliding(0.0).frequency()
     wall = math.pi * 0.033**3 * 0.12
     ends = math.pi * 0.033**4 / 2
-    expected = 1000 * math.sqrt(1e-6 * omega / 2) * (wall + ends)
+    expected = 1000 * math.sqrt(1e-3 * omega / 2) * (wall + ends)
     assert used.damping.linear == pytest.approx(expected, rel=ROUNDING)
+
+
+def swing_among(rates: np.ndarray) -> complex:
+    """The rate [1/s] of the swing among those of small motions."""
+    return max(rates, key=lambda rate: rate.imag)
+
+
+@pytest.mark.parametrize("can", [None, METAL], ids=["massless", "metal"])
+@pytest.mark.parametrize("name", ["water", "olive oil"])
+@pytest.mark.parametrize("fill", [0.5, 0.75, 0.9])
+def test_a_thin_liquid_swings_and_decays_as_the_slowest_mode(
+    fill: float,
+    name: str,
+    can: Can | None,
+) -> None:
+    """The mode's frequency has no damping; the load's, like its decay, errs by zeta squared."""
+    scene = liquid(name, 0.0, fill, can)
+    modes = slosh.rolling(fill, scene.effective_mass / scene.load.mass)
+    nu = LIQUIDS[name].viscosity
+    zeta = sum(modes.damping_ratios(scene.can.radius, scene.can.length, scene.gravity, nu))
+    omega = modes.frequencies(scene.can.radius, scene.gravity)[0]
+    swing = swing_among(scene.modes())
+    assert abs(swing) == pytest.approx(omega, rel=5 * zeta**2)
+    assert -swing.real == pytest.approx(zeta * omega, rel=5 * zeta**2)
+
+
+SLOSHES = [
+    {"name": "water"},
+    {"name": "beer"},
+    {"name": "olive oil"},
+    {"fill": 0.25, "can": METAL},
+    {"fill": 0.75, "incline": 0.0},
+]
+TURNS = [
+    ({"name": "glycerol"}, r"its layers are 0\.19 radii thick, and slosh has 0\.1 at most"),
+    ({"name": "honey"}, r"its layers are 0\.46 radii"),
+    ({"fill": 0.995, "incline": 0.0}, r"its fill is not within 0\.01 to 0\.99"),
+    ({"fill": 0.75}, "the incline is too steep to hold it"),
+    ({"fill": 0.25}, "the slowest mode of its slosh has only 30 % of the energy"),
+]
+
+
+@pytest.mark.filterwarnings("ignore::mjbeer.LiquidWarning")
+def test_thin_liquids_slosh_and_the_others_turn_as_ice() -> None:
+    """The mass and its place are the same."""
+    for given in SLOSHES:
+        used = liquid_in(**given)
+        load = liquid(**given).load
+        assert not used.swing.as_ice
+        assert load == used.swing.load
+        assert load == Load.liquid(given.get("can", Can()), given.get("fill", 0.5), used.density)
+    for given, reason in TURNS:
+        used = liquid_in(**given)
+        load = liquid(**given).load
+        assert re.match(reason, used.swing.as_ice)
+        assert load == used.swing.load
+        assert load == Load.segment(fill=given.get("fill", 0.5), density=used.density)
+
+
+def test_slosh_ends_at_one_viscosity() -> None:
+    """Half full at 3.2e-4 m^2/s, where no liquid of ours is: what the step changes."""
+    omega = liquid("water", 0.0).frequency()
+    limit = (0.1 * 0.033) ** 2 * 29.904
+    assert limit == pytest.approx(3.2e-4, rel=0.02)
+    below = liquid_in("water", 0.0, viscosity=0.999 * limit).swing
+    above = liquid_in("water", 0.0, viscosity=1.001 * limit).swing
+    assert not below.as_ice
+    assert above.as_ice
+    assert below.frequency == pytest.approx(omega, rel=1e-3)
+    assert below.frequency / above.frequency == pytest.approx(1.51, abs=0.005)
+    swing = swing_among(liquid("water", 0.0, viscosity=0.999 * limit).modes())
+    # Half of the amplitude is lost in less than a period.
+    assert math.log(2) / -swing.real == pytest.approx(0.9 * math.tau / swing.imag, rel=0.1)
+
+
+def test_a_liquid_with_several_modes_is_told() -> None:
+    """From a half to 0.8 of the energy the load sloshes, and below it has the inertia of ice."""
+    for fill, share, inertia in ((0.4, "72 %", "of that mode"), (0.25, "30 %", "of ice")):
+        message = f"the slowest mode has {share} of the energy .* has the inertia {inertia}$"
+        with pytest.warns(LiquidWarning, match=message) as given:
+            liquid("water", 0.0, fill)
+        assert [warning.filename for warning in given] == [__file__]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        liquid("water", 0.0, 0.5)
+        liquid("water", 0.0, 0.25, METAL)
+        liquid("glycerol", 0.0, 0.4)
 
 
 @pytest.mark.slow
@@ -139,23 +226,22 @@ def test_damping_is_continuous_towards_level_ground() -> None:
         return float(np.abs(motion.phi - scene.terminal_tilt()).max())
 
     level = kept(0.0)
-    assert level == pytest.approx(0.603, abs=1e-3)  # three digits
-    for incline, apart in ((1e-9, 1e-5), (1e-6, 1e-2), (1e-4, 0.1)):
+    assert level == pytest.approx(0.850, abs=1e-3)  # three digits
+    for incline, apart in ((1e-9, 1e-5), (1e-6, 1e-2), (1e-4, 0.2)):
         assert abs(kept(incline) / level - 1) < apart
 
 
 def test_the_law_says_where_it_holds() -> None:
-    """Creep holds down to 0, and so does a swing; water's swing of two radians is one of 18
-    rad/s."""
+    """Creep holds down to 0, and so does a swing, up to where layers of rolling have its torque."""
     assert liquid_in("honey").damping.valid_rates == pytest.approx((0.0, 217), rel=0.01)
     assert liquid_in("water", incline=0.0).damping.valid_rates == pytest.approx(
-        (0.0, 1.39 * 37.5), rel=0.01
+        (0.0, 1.39 * 56.5), rel=0.01
     )
 
 
 WARNED = {
     "water": "terminal speed of 4.2 m/s the wall's centrifugal acceleration is more than g",
-    "olive oil": "terminal speed of 0.96 m/s the wall's centrifugal acceleration is more than g",
+    "olive oil": "terminal speed of 0.94 m/s the wall's centrifugal acceleration is more than g",
     "glycerol": "it coats the can: at .* rad/s the film on the wall can hold 45 % of it",
 }
 
@@ -181,7 +267,7 @@ def test_a_run_says_when_its_liquid_is_no_lump_any_more() -> None:
     time = run.record.no_lump_at
     speed = float(np.interp(time, run.time, run.u_dot))
     limit = math.sqrt(9.81 * math.cos(scene.incline) * 0.033)
-    assert speed == pytest.approx(limit, rel=2e-3)  # up to a sample later
+    assert speed == pytest.approx(limit, abs=2e-3)  # a sample later, at 1.7 m/s^2
     assert run.record.largest_slip_rate == np.abs(slip_rate_of(scene, run.phi_dot, run.u_dot)).max()
     (told,) = run.liquid_warnings
     assert (
@@ -215,3 +301,42 @@ def test_a_film_is_a_reason_once_the_wall_has_carried_it_up(
     if share:
         assert f"{100 * carried:.0f} %" == share
         assert f"the film on the wall can hold {share} of it" in run.warnings[0]
+
+
+def test_the_rest_of_the_surface_is_that_of_the_present_rates() -> None:
+    """Where the load does not accelerate: at the terminal speed, and without friction."""
+    scene = liquid("water", math.radians(1), can=METAL, drag=0.01)
+    speed = scene.terminal_speed()
+    rest = resting_tilt(scene, np.zeros(1), np.array([speed]))
+    assert rest == pytest.approx(scene.terminal_tilt(), rel=1e-12)
+    free = Scene(METAL, Load.liquid(METAL), math.radians(5))
+    assert resting_tilt(free, np.zeros(1), np.ones(1)) == pytest.approx(free.equilibrium())
+    for u_dot in (0.0, 0.1, 0.3):
+        rest = float(resting_tilt(scene, np.zeros(1), np.array([u_dot]))[0])
+        assert abs(accelerations(scene, rest, 0.0, u_dot).phi_ddot) < 1e-10
+
+
+@pytest.mark.parametrize("turns", [0, 1])
+def test_a_surface_that_tilts_beyond_linear_theory_is_told(turns: int) -> None:
+    """Damped or not, and also after a whole turn; 0.2 rad is allowed."""
+    free = Scene(METAL, Load.liquid(METAL), 0.0)
+    times = np.linspace(0, 0.3, 301)
+    start = math.tau * turns
+    for scene in (free, liquid("water", 0.0, can=METAL)):
+        assert exact(scene, times, start + 0.199).liquid_warnings == ()
+        run = exact(scene, times, start + 0.3)
+        assert run.record.largest_tilt == pytest.approx(0.3, rel=1e-6)
+        assert run.liquid_warnings == (
+            "the surface tilts by up to 0.3 rad against its rest: "
+            "linear theory of slosh holds up to 0.2 rad",
+        )
+        assert not run.trusted
+
+
+def test_a_load_that_loops_is_no_liquid() -> None:
+    damped = Scene(METAL, Load.liquid(METAL), 0.0, damping=1e-7)
+    run = exact(damped, np.linspace(0, 0.5, 501), 0.0, 150.0)
+    assert run.phi[-1] > math.tau
+    assert run.liquid_warnings == (
+        "the load stands for a liquid that sloshes, and turns round, as no liquid does",
+    )

@@ -11,6 +11,7 @@ import pytest
 from mjbeer import Can, Load, Scene
 from mjbeer.exceptions import ParameterError
 from mjbeer.theory import slosh
+from mjbeer.theory.liquid import LIQUIDS
 from mjbeer.theory.segment import segment
 from tests.support.lying_laplace import Section
 
@@ -173,6 +174,46 @@ def test_on_a_slope_the_load_is_as_much_slower_as_its_docstring_says(
     load_length = slosh.rolling(fill, 1.0).axis_inertia / offset - offset * along**2
     liquid_square = section(fill).modes(1 / along**2 - 1).squares[0]
     assert 1 - math.sqrt(1 / load_length / liquid_square) == pytest.approx(slower, rel=0.1)
+
+
+# Relative errors of the integrals over wall, end and area. From half full on, the velocity is not
+# smooth in the corner: along the wall 48 polynomials err by 4e-5 at 0.9 and 2.5e-4 at 0.95, as 160
+# show, and the witness's nodes in the area miss some of the strain.
+LOSSES = {
+    0.1: (1e-9, 1e-9, 1e-8),
+    0.25: (1e-7, 1e-8, 1e-7),
+    0.5: (2e-6, 1e-7, 1e-5),
+    0.75: (2e-5, 1e-6, 1e-3),
+    0.9: (2e-4, 1e-5, 0.02),
+    0.95: (5e-4, 1e-5, 0.06),
+}
+
+
+@pytest.mark.parametrize("can", ["all but massless", "metal"])
+@pytest.mark.parametrize("fill", LOSSES)
+def test_a_mode_loses_what_the_flow_of_harmonic_functions_loses(fill: float, can: str) -> None:
+    can_ratio = METAL.effective_mass / Load.segment(fill=fill).mass
+    if can == "all but massless":
+        can_ratio = 1e-3  # with less, the witness divides what is next to 0
+    found = slosh.rolling(fill, 1 + can_ratio)._losses
+    expected = section(fill).losses(can_ratio)
+    for name, error in zip(expected._fields, LOSSES[fill], strict=True):
+        assert getattr(found, name) == pytest.approx(getattr(expected, name), rel=error), name
+
+
+def test_the_damping_of_water_and_oil_is_what_the_pages_say() -> None:
+    """Layers and bulk in a can without mass, of 33 mm: water 0.0012 and 0.00033, half full."""
+    can = Can()
+    expected = {
+        ("water", 0.5): (0.0012, 0.00033),
+        ("water", 0.9): (0.0021, 0.00076),
+        ("olive oil", 0.5): (0.012, 0.030),
+        ("olive oil", 0.9): (0.020, 0.070),
+    }
+    for (name, fill), ratios in expected.items():
+        nu = LIQUIDS[name].viscosity
+        found = slosh.rolling(fill, 1.0).damping_ratios(can.radius, can.length, GRAVITY, nu)
+        assert found == pytest.approx(ratios, rel=0.05)
 
 
 def test_frequencies_in_units() -> None:

@@ -1,26 +1,27 @@
-"""Lines and arrows at the can, and numbers at the board, which explain a motion."""
+"""Lines, arrows and letters at the can, which explain a motion."""
 
 import math
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from matplotlib.ticker import MaxNLocator
 
-from mjbeer.drawing.camera import View, circle, in_space, scale
-from mjbeer.drawing.scene import Display, coordinates
-from mjbeer.drawing.sheet import INK, Box, Colour, Sheet, overlap
-from mjbeer.drawing.strip import MeanForces, mean_forces, mean_motion, wrapped
+from mjbeer.drawing.camera import View, circle, in_space, unit_vectors
+from mjbeer.drawing.quantities import MeanForces, mean_forces, mean_motion, wrapped
+from mjbeer.drawing.scene import coordinates
+from mjbeer.drawing.sheet import INK, Colour, Sheet
 from mjbeer.drawing.style import FilmStyle, Mark
 from mjbeer.model.looks import WALL
 from mjbeer.theory.can import RADIUS
 from mjbeer.theory.trajectory import Trajectory
 
 LONGEST = 1.6
-"""Longest arrow of a force, in radii; that of the weight is 1. Only the blow of a landing would
-be longer."""
-_FAINT = 0.05  # shortest arrow that is drawn, in radii
-_CLEAR = 0.4  # least distance of a force's letter from the can's foot, in radii
+"""Length of the longest arrow of a force, in radii; that of the weight is 1. Only the blow of a
+landing would be longer."""
+_SHORTEST = 0.05
+"""Length of the shortest arrow that is drawn, in radii."""
+_LETTER_DISTANCE = 0.4
+"""Least distance of a force's letter from where the can touches the incline, in radii."""
 
 _RIM = (0.79, 0.12, 0.16)
 _CENTRE = (0.42, 0.21, 0.0)
@@ -35,9 +36,10 @@ class Legend(NamedTuple):
     """What a mark means."""
 
     sign: str
+    """A sign that looks like the mark."""
     colour: Colour
     meaning: str
-    """In words, with a place {} for what rolls."""
+    """What it means in words, with a place {} for what rolls."""
 
 
 LEGENDS: dict[Mark, tuple[Legend, ...]] = {
@@ -70,13 +72,13 @@ class Position(NamedTuple):
 
 
 class Annotations:
-    """Marks at the can of a trajectory, to be drawn over the pictures at some times.
+    """The marks at the can of a trajectory, drawn on top of its pictures.
 
     Places along the incline and above it, and sizes, are in radii.
     """
 
     def __init__(self, trajectory: Trajectory, style: FilmStyle, plane: float) -> None:
-        """Prepare to draw on the `plane` y of the can's near end [m]."""
+        """Prepare to draw in the plane y = `plane` of the can's near end [m]."""
         self._motion = trajectory
         self._measured = style.measured
         self._plane = plane
@@ -84,7 +86,7 @@ class Annotations:
         self._path_times = np.linspace(trajectory.time[0], trajectory.time[-1], 2000)
         self._path = coordinates(trajectory, self._path_times)
         self._forces = MeanForces(np.zeros(0), np.zeros(0))
-        """The lengths of the arrows of forces at the samples."""
+        """The lengths of the arrows of forces at the samples, in radii."""
         if "normal" in style.marks or "friction" in style.marks:
             self._forces = _arrow_lengths(mean_forces(trajectory))
         draw: dict[Mark, Callable[[_Pen, Position], None]] = {
@@ -127,23 +129,24 @@ class Annotations:
 
     def _draw_normal(self, pen: "_Pen", now: Position) -> None:
         normal = self._arrow(self._forces.normal, now)
-        if normal > _FAINT:
+        if normal > _SHORTEST:
             length = min(normal, LONGEST)
             foot = self._foot(now)
             pen.arrow(foot - np.array([0, length]), foot, _NORMAL)
-            # The letter stands where friction does not push to.
+            # The letter is at the side of the arrow where there is no arrow of friction.
             aside = 0.36 * self._friction_direction(now)
-            pen.text(foot - np.array([aside, max(length, _CLEAR) + 0.1]), "N", _NORMAL)
+            below = max(length, _LETTER_DISTANCE) + 0.1
+            pen.text(foot - np.array([aside, below]), "N", _NORMAL)
 
     def _draw_friction(self, pen: "_Pen", now: Position) -> None:
         friction = abs(self._arrow(self._forces.friction, now))
-        if friction > _FAINT:
+        if friction > _SHORTEST:
             length = min(friction, LONGEST)
             direction = self._friction_direction(now)
             foot = self._foot(now)
             tail = foot - np.array([0, 0.12])
             pen.arrow(tail, tail + np.array([direction * length, 0]), _FRICTION)
-            letter = np.array([direction * max(length, _CLEAR), -0.54])
+            letter = np.array([direction * max(length, _LETTER_DISTANCE), -0.54])
             pen.text(foot + letter, "F", _FRICTION)
 
     def _arrow(self, force: np.ndarray, now: Position) -> float:
@@ -159,7 +162,7 @@ class Annotations:
         return np.array([self._axis(now)[0], -WALL])
 
     def _draw_phi(self, pen: "_Pen", now: Position) -> None:
-        """Draw phi outside the rim.
+        """Draw phi outside the rim: an arc between two short lines, and the letter beside it.
 
         It is the angle from the incline to the beer's surface, or from below the axle to a bob.
         """
@@ -168,14 +171,15 @@ class Annotations:
         if self._motion.scene.load.fill is None:
             start = -math.pi / 2
         axis = self._axis(now)
-        for direction in (start, start - angle):
-            pen.line(axis + np.array([[1.07], [1.42]]) * _towards(direction), 0.045, INK)
+        ends = np.array([[1.07], [1.42]])
+        pen.line(axis + ends * unit_vectors(start), 0.045, INK)
+        pen.line(axis + ends * unit_vectors(start - angle), 0.045, INK)
         arc = start - np.linspace(0, angle, 32)
-        pen.line(axis + 1.26 * _towards(arc), 0.045, INK)
-        pen.text(axis + 1.62 * _towards(start - angle / 2), "φ", INK)
+        pen.line(axis + 1.26 * unit_vectors(arc), 0.045, INK)
+        pen.text(axis + 1.62 * unit_vectors(start - angle / 2), "φ", INK)
 
     def _draw_measured(self, pen: "_Pen", now: Position) -> None:
-        """Draw some sixty of the measured places, and the latest."""
+        """Draw about sixty of the measured places, and the latest."""
         assert self._measured is not None
         step = max(1, len(self._measured) // 60)
         seen = self._measured[self._measured[:, 0] <= now.time]
@@ -186,16 +190,11 @@ class Annotations:
 def _arrow_lengths(forces: MeanForces) -> MeanForces:
     """Return the lengths of the arrows of forces, in radii.
 
-    A weight has the length 1, or less if arrows would often be too long.
+    A weight has the length 1, or less if more than a tenth of the forces were too long then.
     """
-    common = max(np.percentile(np.hypot(*forces), 90), _FAINT)
-    factor = min(1.0, LONGEST / common)
+    large = max(np.percentile(np.hypot(*forces), 90), _SHORTEST)
+    factor = min(1.0, LONGEST / large)
     return MeanForces(factor * forces.normal, factor * forces.friction)
-
-
-def _towards(angle: float | np.ndarray) -> np.ndarray:
-    """Return unit vectors at angles [rad] from the first axis to the second, shape (..., 2)."""
-    return np.stack([np.cos(angle), np.sin(angle)], axis=-1)
 
 
 class _Pen:
@@ -235,90 +234,3 @@ class _Pen:
         unit = self._sheet.unit
         size = float(np.clip(0.4 * self._size, 1.35 * unit, 2 * unit))
         self._sheet.text(self._pixel(point), words, size, colour, (0.5, 0.5), halo=True)
-
-
-class Board:
-    """What stands still: gravity's arrow, and the incline and distances below the board.
-
-    They are written at the near edge of the board's underside.
-    """
-
-    def __init__(self, display: Display, start: float = 0.0) -> None:
-        """Take the board of a display; `start` is where the distances begin [m]."""
-        board = display.model.geom("board")
-        self.front = float(board.pos[1] - board.size[1])
-        """The coordinate y of the edge [m]."""
-        self.under = float(board.pos[2] - board.size[2])
-        """Its height above the incline [m], which is negative."""
-        self._scene = display.scenes[0]
-        self._start = start
-
-    def pixel(self, view: View, along: np.ndarray | float) -> np.ndarray:
-        """Return column and row of points of the edge, shape (..., 2); `along` is as drawn [m]."""
-        return view.pixel(in_space(self._scene, along, self.under, self.front))
-
-    def along(self, view: View, column: float) -> float:
-        """Return how far down the incline the edge is in a column of the picture, as drawn [m]."""
-        first, second = self.pixel(view, np.array([0.0, 1.0]))[:, 0]
-        return float((column - first) / (second - first))
-
-    def draw(self, sheet: Sheet, view: View) -> None:
-        """Draw gravity's arrow, the incline's angle and distances."""
-        self._draw_gravity(sheet, view)
-        if self._scene.incline:
-            self._draw_angle(sheet, view)
-        self._draw_distances(sheet, view)
-
-    def _draw_gravity(self, sheet: Sheet, view: View) -> None:
-        """Draw gravity's arrow in the corner from which the incline falls away."""
-        unit = sheet.unit
-        column = 3 * unit if self._scene.incline < 0 else sheet.width - 1.6 * unit
-        tail = np.array([column, view.top + 1.0 * unit])
-        sheet.arrow(tail, tail + np.array([0, 4.2 * unit]), 0.32 * unit, INK)
-        sheet.text(tail + np.array([-0.6, 2]) * unit, "g", 1.5 * unit, anchor=(1, 0.5))
-
-    def _draw_angle(self, sheet: Sheet, view: View) -> None:
-        """Draw the angle of the incline under the board, and keep other texts from its lines."""
-        unit = sheet.unit
-        tilt = abs(self._scene.incline)
-        uphill = -math.copysign(1.0, self._scene.incline)  # 1 to the right
-        reach = 9 * unit
-        lowest = view.top + view.pixels[1] - 2.6 * unit
-        corner = self.pixel(view, self.along(view, sheet.width * (0.5 - 0.1 * uphill)))
-        if corner[1] > lowest:  # the board leaves the picture through its lower edge
-            corner = corner + (corner[1] - lowest) * np.array([uphill / math.tan(tilt), -1])
-        end = corner + np.array([uphill * reach, 0])
-        arc = np.array([uphill, -1]) * _towards(np.linspace(0, tilt, 24))
-        sheet.line(np.array([corner, end]), 0.12 * unit)
-        sheet.line(corner + 0.8 * reach * arc, 0.12 * unit)
-        place = corner + np.array([uphill * 0.5 * reach, 0.3 * unit])
-        sheet.text(place, f"α = {math.degrees(tilt):.3g}°", 1.4 * unit, anchor=(0.5, 0))
-        left, right = sorted([float(corner[0]), float(end[0])])
-        height = reach * math.sin(tilt)
-        sheet.boxes.append(Box(left, float(corner[1] - height), right, float(corner[1])))
-
-    def _draw_distances(self, sheet: Sheet, view: View) -> None:
-        """Write distances [m] below the board, with a tick at each, where there is room."""
-        unit = sheet.unit
-        size = scale(self._scene)
-        first = self.along(view, 0) / size - self._start
-        last = self.along(view, sheet.width) / size - self._start
-        most = max(1, int(sheet.width / (6 * unit)))  # two of them are six units apart at least
-        ticks = MaxNLocator(most, steps=[1, 2, 5, 10]).tick_values(first, last)
-        numbers = np.round(ticks, 12)
-        places = self.pixel(view, (numbers + self._start) * size)
-        down = np.array([-math.sin(self._scene.incline), math.cos(self._scene.incline)])
-        for number, place in zip(numbers, places, strict=True):
-            words = f"{number:.6g} m".replace("-", "\N{MINUS SIGN}")
-            below = place + np.array([0, 0.8 * unit])
-            box = sheet.box(below, words, 1.15 * unit, anchor=(0.5, 0))
-            if _has_room(box, sheet, view):
-                sheet.line(np.array([place, place + 0.5 * unit * down]), 0.12 * unit)
-                sheet.text(below, words, 1.15 * unit, anchor=(0.5, 0))
-
-
-def _has_room(box: Box, sheet: Sheet, view: View) -> bool:
-    """Return whether a box is inside the picture and free of texts."""
-    in_columns = box.left > 0 and box.right < sheet.width
-    in_rows = box.top > view.top and box.bottom < view.top + view.pixels[1]
-    return in_columns and in_rows and not any(overlap(box, other) for other in sheet.boxes)

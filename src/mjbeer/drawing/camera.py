@@ -1,7 +1,6 @@
 """What an eye sees: which pixel shows a point, and how a camera follows a motion."""
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Literal, NamedTuple, Self
 
@@ -21,9 +20,8 @@ CAMERAS: tuple[Camera, ...] = ("auto", "fixed", "pan")
 AROUND = 1.9
 """At least so many radii around the can's axis are seen: the can, the angle of its load, and the
 board."""
-_SMALLEST = (
-    0.11  # "auto" pans where the radius would be less than this share of the picture's height
-)
+_SMALLEST = 0.11
+"""Least radius of the can, divided by the picture's height, with which "auto" stands still."""
 
 
 def scale(scene: Scene) -> float:
@@ -47,8 +45,12 @@ def in_space(
 
 def circle(radius: float, count: int = 48) -> np.ndarray:
     """Return points of a circle about the origin, shape (count + 1, 2), the first also last."""
-    angle = np.linspace(0, 2 * math.pi, count + 1)
-    return radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    return radius * unit_vectors(np.linspace(0, 2 * math.pi, count + 1))
+
+
+def unit_vectors(angle: float | np.ndarray) -> np.ndarray:
+    """Return unit vectors at angles [rad] from the first axis to the second, shape (..., 2)."""
+    return np.stack([np.cos(angle), np.sin(angle)], axis=-1)
 
 
 class Edges(NamedTuple):
@@ -86,10 +88,12 @@ class View:
     def facing(cls, centre: np.ndarray, metres: np.ndarray, pixels: tuple[int, int]) -> Self:
         """Return the view along the can's axis of a rectangle across it.
 
-        `centre` is its centre [m], `metres` are its width and height [m].
+        `centre` is the rectangle's centre [m], `metres` are its width and height [m].
         """
-        distance = 4 * float(np.hypot(*metres))  # the longer, the less of the can's inside is seen
-        above = 0.18 * float(metres[1])  # from a little above, the upper side of the board is seen
+        # The farther the eye is, the less of the inside of the can's wall is seen.
+        distance = 4 * float(np.hypot(*metres))
+        # From a little above, the upper side of the board is seen.
+        above = 0.18 * float(metres[1])
         eye = centre + np.array([0.0, -distance, above])
         axes = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
         middle = np.array([0.0, -above])
@@ -103,7 +107,8 @@ class View:
     ) -> Self:
         """Return the upright view from an `eye` [m] that just shows some points [m], shape (n, 3).
 
-        The `margin` around the points is a share of the size of what is seen.
+        The picture begins at the row `top` of the sheet. The `margin` around the points is a share
+        of the size of what is seen.
         """
         away = eye - points.mean(axis=0)
         distance = float(np.linalg.norm(away))
@@ -155,13 +160,31 @@ class View:
         return Edges(int(low[0]), int(low[1]), int(high[0]), int(high[1]))
 
 
-class CameraPath(NamedTuple):
-    """How a camera films a motion."""
+@dataclass(frozen=True, eq=False)
+class CameraPath:
+    """How a camera films a motion: it stands still, or moves along the incline beside the can."""
 
-    view: Callable[[float], View]
-    """Returns what the camera sees at a time [s]."""
-    still: bool
-    """Whether it always sees the same."""
+    scene: Scene
+    along: Polynomial
+    """How far down the incline the camera is over time [s], as drawn [m]."""
+    middle: np.ndarray
+    """Middle of what is seen, x and z from the place of the camera on the incline [m]."""
+    metres: np.ndarray
+    """Width and height of what is seen [m]."""
+    front: float
+    """The plane y of the can's near end [m], in which they are measured."""
+    pixels: tuple[int, int]
+    """Width and height of the picture [pixels]."""
+
+    @property
+    def still(self) -> bool:
+        """Whether it always sees the same."""
+        return self.along.degree() == 0
+
+    def view(self, time: float) -> View:
+        """Return what the camera sees at a time [s]."""
+        x, z = on_incline(self.scene, self.along(time), 0.0) + self.middle
+        return View.facing(np.array([x, self.front, z]), self.metres, self.pixels)
 
 
 def follow(
@@ -176,29 +199,27 @@ def follow(
     The can's near end is in the plane y = `front` [m]. At least so many radii `below` its axis are
     seen.
     """
+    u = motion.u * scale(motion.scene)
+    half_way = Polynomial([(u.min() + u.max()) / 2])
+    still = _path(motion, half_way, front, pixels, below)
+    if camera == "fixed" or len(motion.time) < 3:  # so few places have no acceleration
+        return still
+    if camera == "auto" and RADIUS / still.metres[1] >= _SMALLEST:
+        return still
+    parabola = Polynomial.fit(motion.time, u, 2).convert()
+    return _path(motion, parabola, front, pixels, below)
+
+
+def _path(
+    motion: Trajectory, along: Polynomial, front: float, pixels: tuple[int, int], below: float
+) -> CameraPath:
+    """Return the path of a camera that is `along` the incline, and just shows the whole motion."""
     scene = motion.scene
-    along = motion.u * scale(scene)
-    height = motion.lift * scale(scene)
+    u = motion.u * scale(scene) - along(motion.time)
+    height = RADIUS + motion.lift * scale(scene)
+    axis = on_incline(scene, u, height)
+    low = axis.min(axis=0) - RADIUS * np.array([AROUND, below])
+    high = axis.max(axis=0) + RADIUS * AROUND
     shape = np.array(pixels) / pixels[1]
-
-    def framed(path: Polynomial) -> tuple[np.ndarray, np.ndarray]:
-        """Return the middle of what is seen, from the camera's place, and its size [m]."""
-        axis = on_incline(scene, along - path(motion.time), height + RADIUS)
-        low = axis.min(axis=0) - RADIUS * np.array([AROUND, below])
-        high = axis.max(axis=0) + RADIUS * AROUND
-        return (low + high) / 2, ((high - low) / shape).max() * shape
-
-    # Distance of the camera down the incline [m] over time, as drawn.
-    path = Polynomial([(along.min() + along.max()) / 2])
-    middle, metres = framed(path)
-    large = bool(RADIUS / metres[1] >= _SMALLEST)
-    still = camera == "fixed" or len(motion.time) < 3 or (camera == "auto" and large)
-    if not still:
-        path = Polynomial.fit(motion.time, along, 2).convert()
-        middle, metres = framed(path)
-
-    def view(time: float) -> View:
-        x, z = on_incline(scene, path(time), 0.0) + middle
-        return View.facing(np.array([x, front, z]), metres, pixels)
-
-    return CameraPath(view, still)
+    metres = ((high - low) / shape).max() * shape
+    return CameraPath(scene, along, (low + high) / 2, metres, front, pixels)

@@ -1,5 +1,6 @@
 """Films: pictures one after the other, their speed, and a caption; and the film of one motion."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Generator
 from contextlib import closing
 from dataclasses import dataclass, replace
@@ -8,7 +9,8 @@ from functools import partial
 import numpy as np
 
 from mjbeer import require
-from mjbeer.drawing.annotations import Annotations, Board
+from mjbeer.drawing.annotations import Annotations
+from mjbeer.drawing.board import Board
 from mjbeer.drawing.camera import AROUND, Edges, follow
 from mjbeer.drawing.overlay import (
     HEADER,
@@ -26,7 +28,13 @@ from mjbeer.drawing.style import FilmStyle
 from mjbeer.exceptions import ParameterError
 from mjbeer.theory.trajectory import Trajectory
 
-_MOST_FRAMES = 1e6  # largest number of frames of a video: nine hours at 30 frames per second
+_MOST_FRAMES = 1e6
+"""Largest number of frames of a video: nine hours at 30 frames per second."""
+_READABLE = 24
+"""Least width of a picture with charts, in units of the sheet: in a narrower one they cannot be
+read."""
+_UNDER_ARROWS = 3.0
+"""So many radii are seen below the can's axis if forces are drawn, whose arrows come from there."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +66,7 @@ class RenderPlan:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Film:
+class Film(ABC):
     """A film, which can be pickled so that another process can draw it."""
 
     speed: float
@@ -68,14 +76,18 @@ class Film:
     caption: str = ""
     """What is seen, in whole sentences, for the text beside the film."""
 
+    @abstractmethod
     def plan(self) -> RenderPlan:
-        """Compute what moves, and return what is needed to draw it."""
-        raise NotImplementedError
+        """Compute the motion, and return what is needed to draw it."""
 
 
 @dataclass(frozen=True)
 class MotionFilm(Film):
-    """The film of a motion."""
+    """The film of a motion.
+
+    Raises:
+      ParameterError: when it is planned, if the times of the motion do not increase.
+    """
 
     trajectory: Callable[[], Trajectory]
     """A function that computes the motion, and that can be pickled."""
@@ -102,30 +114,29 @@ def _pictures(
     width: int,
     height: int,
 ) -> Generator[np.ndarray]:
-    """Draw the pictures of a motion: the header above, then the scene, and the charts below."""
+    """Draw the pictures of a motion: the header above, the scene, and the charts below."""
     sheet = Sheet(width, height)
     display = Display([trajectory.scene])
-    # In a narrower picture charts are not readable.
-    readable = len(trajectory.time) > 1 and width > 24 * sheet.unit
-    below = round(STRIP * sheet.unit) if style.strips and readable else 0
+    has_charts = bool(style.strips) and len(trajectory.time) > 1 and width > _READABLE * sheet.unit
+    below = round(STRIP * sheet.unit) if has_charts else 0
     top = round(HEADER * sheet.unit)
     for_notes = round(NOTE * sheet.unit) if style.notes else 0
     scene_height = height - top - below
 
-    # The camera shows what is below the notes. The arrows of forces need room below the can.
+    # The camera keeps the can below the notes; the scene goes on behind them.
     front = display.ends()[0]
-    under = 3.0 if "normal" in style.marks else AROUND
-    shown = (width, scene_height - for_notes)
-    camera = follow(trajectory, style.camera, front, shown, under)
-    with_notes = Edges(left=0, upper=-for_notes, right=width, lower=shown[1])
+    under = _UNDER_ARROWS if "normal" in style.marks else AROUND
+    below_notes = (width, scene_height - for_notes)
+    camera = follow(trajectory, style.camera, front, below_notes, under)
+    with_notes = Edges(left=0, upper=-for_notes, right=width, lower=scene_height - for_notes)
 
     annotations = Annotations(trajectory, style, front)
     board = Board(display, float(trajectory.u[0]))
     notes = note_spans(trajectory, style.notes)
     doubts = trajectory.solver_warnings
     strip = None
-    if below:
-        marked = next(iter(notes.values()), ())
+    if has_charts:
+        marked = next(iter(notes.values()), ())  # when the first note holds
         strip = ChartStrip(charts(trajectory, style.strips), width, below, marked)
 
     with closing(Painter(display, (width, scene_height), camera.still)) as painter:

@@ -18,28 +18,28 @@ INSTALL = "apt-get update && apt-get install -y libegl1 libopengl0 libgl1-mesa-d
 def context() -> Any:
     """Return the off-screen OpenGL context of this process, not yet current.
 
-    All that the process draws shares its compiled shaders.
+    All pictures of the process share it, and so the shaders that it has compiled.
 
     Raises:
       RenderingError: if OpenGL does not start; the message says why not and what to install.
     """
-    # Mesa's software rasterizer (llvmpipe, seen in 22.3) frees a fence while another of its threads
-    # still unlocks it, and now and then the process crashes. Without threads of its own it cannot.
+    # In Mesa's software renderer (llvmpipe, seen in 22.3) one thread may free a fence that another
+    # is still unlocking, and then the process crashes. Without threads of its own it cannot.
     os.environ.setdefault("LP_NUM_THREADS", "0")
     name = "osmesa" if os.environ.get("MUJOCO_GL", "").strip().lower() == "osmesa" else "egl"
     try:
-        # Not mujoco.GLContext: that is what MUJOCO_GL said when MuJoCo was imported, a window
-        # system's by default.
+        # On Linux, `mujoco.GLContext` is the class that MUJOCO_GL named when MuJoCo was imported.
+        # Without that variable it needs a display.
         library = importlib.import_module(f"mujoco.{name}" if sys.platform == "linux" else "mujoco")
-        # Pictures are drawn into a buffer of MuJoCo's, of any size.
+        # The size does not matter: pictures are drawn into a buffer of MuJoCo's.
         opened = library.GLContext(16, 16)
-    except Exception as error:  # of what kind depends on what is missing
+    except Exception as error:  # its type depends on what is missing
         raise RenderingError(
             f"no off-screen OpenGL ({name}): {error}\n"
             "EGL runs on a graphics card or without one. On Debian and Ubuntu this installs it:\n"
             f"    {INSTALL}"
         ) from error
-    atexit.register(opened.free)  # later it could not be freed any more
+    atexit.register(opened.free)  # after that the interpreter has taken OpenGL apart
     return opened
 
 

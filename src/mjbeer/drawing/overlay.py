@@ -8,14 +8,16 @@ from typing import NamedTuple
 import numpy as np
 
 from mjbeer.drawing.annotations import LEGENDS
+from mjbeer.drawing.quantities import mean_forces
 from mjbeer.drawing.sheet import INK, Sheet
-from mjbeer.drawing.strip import mean_forces
 from mjbeer.drawing.style import FilmStyle, scene_names
 from mjbeer.drawing.words import in_words
+from mjbeer.theory.scene import GRAVITY
 from mjbeer.theory.trajectory import Trajectory
 
 HEIGHT = 4.1
-"""Height of the first two lines above a picture, in units of the sheet."""
+"""Height of the first two lines above a picture, in units of the sheet, as are all heights and
+distances here."""
 HEADER = 5.6
 """Height with the third line, which says what the marks mean."""
 STRIP = 10
@@ -24,8 +26,31 @@ NOTE = 3
 """Height of a note, at the top of the scene."""
 _MARGIN = 1.2
 """Distance of texts from the edges of the sheet."""
-_GREY = "#52606d"  # colour of the second line
-_DOUBT = (0.72, 0.05, 0.05)  # colour of a warning
+_LEGEND_GAPS = (0.5, 1.8)
+"""Gaps behind the sign of a mark, and behind its meaning."""
+_LETTER = 0.65
+"""Width of a letter of a warning; the mean is a little less."""
+_WARNING_MARGINS = 4
+"""Width of the picture that a warning leaves free beside its letters."""
+_DOUBT = (0.72, 0.05, 0.05)
+"""Colour of a warning."""
+
+
+class _TextLine(NamedTuple):
+    """Where a line above a picture is, and how it is written."""
+
+    row: float
+    """Height of its middle below the upper edge of the sheet."""
+    size: float
+    colour: str
+    bold: bool
+    """Whether what stands on the left is bold."""
+
+
+_TITLE_LINE = _TextLine(row=1.5, size=1.45, colour=INK, bold=True)
+_SCENE_LINE = _TextLine(row=3.2, size=1.1, colour="#52606d", bold=False)
+_LEGEND_ROW = 4.7
+"""Height of the middle of the third line below the upper edge."""
 
 
 def draw_header(
@@ -39,14 +64,17 @@ def draw_header(
         digits = max(2, math.ceil(-math.log10(duration)) + 1)
     sheet.blank(0, round(HEADER * unit))
     draw_title(sheet, style.title, in_words(trajectory.scene), time, speed, digits)
+
     body = scene_names(trajectory.scene).body
+    row = _LEGEND_ROW * unit
     column = _MARGIN * unit
-    row = 4.7 * unit
+    behind_sign, behind_meaning = _LEGEND_GAPS
     for mark in style.marks:
         for sign, colour, meaning in LEGENDS[mark]:
             drawn = sheet.text((column, row), sign, 1.1 * unit, colour, bold=True)
-            words = sheet.text((drawn.right + 0.5 * unit, row), meaning.format(body), unit)
-            column = words.right + 1.8 * unit
+            column = drawn.right + behind_sign * unit
+            words = sheet.text((column, row), meaning.format(body), unit)
+            column = words.right + behind_meaning * unit
 
 
 def draw_title(
@@ -54,7 +82,7 @@ def draw_title(
 ) -> None:
     """Draw two lines: a title with the `time` [s], and a scene in words with the playback speed.
 
-    `digits` are those of the time after its point.
+    The time has so many `digits` after its point.
     """
     if speed == 1:
         pace = "real time"
@@ -62,47 +90,48 @@ def draw_title(
         pace = f"slowed down {1 / speed:.3g} times"
     else:
         pace = f"sped up {speed:.3g} times"
+    sheet.blank(0, round(HEIGHT * sheet.unit))
+    _draw_line(sheet, _TITLE_LINE, title, f"t = {time:.{digits}f} s")
+    _draw_line(sheet, _SCENE_LINE, words, pace)
+
+
+def _draw_line(sheet: Sheet, line: _TextLine, left: str, right: str) -> None:
+    """Write a text at each end of a line; the left one is smaller if it would touch the right."""
     unit = sheet.unit
-    sheet.blank(0, round(HEIGHT * unit))
-    clock = sheet.text(
-        (sheet.width - _MARGIN * unit, 1.5 * unit),
-        f"t = {time:.{digits}f} s",
-        1.45 * unit,
-        anchor=(1, 0.5),
-    )
-    _draw_fitting(sheet, title, 1.5 * unit, 1.45 * unit, INK, clock.left, bold=True)
-    aside = sheet.text(
-        (sheet.width - _MARGIN * unit, 3.2 * unit), pace, 1.1 * unit, _GREY, anchor=(1, 0.5)
-    )
-    _draw_fitting(sheet, words, 3.2 * unit, 1.1 * unit, _GREY, aside.left)
-
-
-def _draw_fitting(
-    sheet: Sheet, text: str, row: float, size: float, colour: str, until: float, bold: bool = False
-) -> None:
-    """Draw a text from the left margin, smaller where it would come near a column `until`."""
-    left = _MARGIN * sheet.unit
-    wanted = sheet.box((left, 0), text, size, bold=bold).right
-    fits = max(0.5, min(1.0, (until - 2 * sheet.unit) / wanted))
-    sheet.text((left, row), text, fits * size, colour, bold=bold)
+    row = line.row * unit
+    size = line.size * unit
+    begin = _MARGIN * unit
+    end = sheet.width - begin
+    limit = sheet.text((end, row), right, size, line.colour, anchor=(1, 0.5)).left - 2 * unit
+    wanted = sheet.box((begin, 0), left, size, bold=line.bold).right
+    fits = max(0.5, min(1.0, limit / wanted))
+    sheet.text((begin, row), left, fits * size, line.colour, bold=line.bold)
 
 
 class Note(NamedTuple):
     """What a film says while a motion does something."""
 
     words: str
-    """What it says, with places for {body} and {load}, by name, and the largest {lift} [mm]."""
+    """What it says, with places for the names of {body} and {load}, and the largest {lift} [mm]."""
     holds: Callable[[Trajectory], np.ndarray]
     """Returns at which samples of a motion it does so."""
 
 
+_SLIPPING = 0.03
+"""Rate of slip from which on a can is said to slip, divided by sqrt(g a). A slower slip is not
+seen: while a stone falls from the axis to the incline the can slips by less than a twentieth of its
+radius."""
+
+
 def _slips(motion: Trajectory) -> np.ndarray:
-    """Return where a can slips; a contact that rolls creeps, which is less."""
+    """Return at which samples a can slips."""
+    gravity = motion.scene.gravity or GRAVITY  # a weightless can is judged as on earth
     rate = np.abs(np.gradient(motion.slip, motion.time))
-    return rate > 0.09 * np.sqrt(motion.scene.can.radius)
+    return rate > _SLIPPING * math.sqrt(gravity * motion.scene.can.radius)
 
 
 def _hesitates(motion: Trajectory) -> np.ndarray:
+    """Return at which samples a can gains speed at less than half its mean rate."""
     gains = np.gradient(motion.u_dot, motion.time)
     return gains < motion.scene.acceleration() / 2
 
@@ -123,7 +152,8 @@ NOTES = {
     ),
     "hesitates": Note("the {load} is uphill: the {body} hesitates", _hesitates),
 }
-"""All notes by name. Where several of a film hold, the first of them is shown."""
+"""All notes by name. Forces are in weights of can and load. Where several notes of a film hold, the
+one that the film names first is shown."""
 
 Spans = list[tuple[float, float]]
 """From when to when [s] something holds."""
@@ -141,12 +171,17 @@ def note_spans(motion: Trajectory, names: Sequence[str]) -> dict[str, Spans]:
 
 
 def _spans(time: np.ndarray, holds: np.ndarray) -> Spans:
-    """Return from when to when [s] what holds at samples does so, without brief pauses."""
+    """Return from when to when [s] something holds that does so at some samples.
+
+    A pause of less than a fiftieth of the motion does not interrupt it.
+    """
     changes = np.flatnonzero(np.diff(np.concatenate([[False], holds, [False]])))
     edges = np.append(time, time[-1])[changes].tolist()
+    begins = edges[::2]
+    ends = edges[1::2]
     brief = np.ptp(time) / 50
     spans: Spans = []
-    for first, last in zip(edges[::2], edges[1::2], strict=True):
+    for first, last in zip(begins, ends, strict=True):
         if spans and first - spans[-1][1] < brief:
             spans[-1] = (spans[-1][0], last)
         else:
@@ -164,14 +199,13 @@ def draw_note(sheet: Sheet, notes: Mapping[str, Spans], time: float, top: int) -
 
 
 def draw_warning(sheet: Sheet, doubts: Sequence[str], top: int) -> None:
-    """Say below a row `top` that what is shown is not to be relied on, if there are `doubts`.
+    """Say below a row `top` that the picture is not to be relied on, if there are `doubts`.
 
-    A doubt is shown up to its parentheses, which say what would be trusted.
+    Each doubt is a reason; what it has in parentheses, the limits of what is trusted, is left out.
     """
     if not doubts:
         return
-    # The mean letter is 0.6 units wide.
-    letters = int((sheet.width / sheet.unit - 4) / 0.65)
+    letters = int((sheet.width / sheet.unit - _WARNING_MARGINS) / _LETTER)
     lines = ["Not to be relied on"]
     for doubt in doubts:
         reason, *_ = doubt.partition(" (")

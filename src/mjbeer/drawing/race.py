@@ -16,13 +16,23 @@ from mjbeer.drawing.overlay import HEIGHT, draw_title, draw_warning
 from mjbeer.drawing.scene import Display, Painter, coordinates
 from mjbeer.drawing.sheet import INK, Sheet
 from mjbeer.drawing.words import in_degrees
+from mjbeer.exceptions import ParameterError
 from mjbeer.theory.can import RADIUS
 from mjbeer.theory.trajectory import Trajectory
 
-_APART = 0.225  # distance from lane to lane as drawn [m]; a can is 0.12 m long
+_APART = 1.875
+"""Distance from lane to lane, in lengths of the longest can."""
+_EYE_DISTANCE = 6.0
+"""Distance of the eye from the middle of the race, in its lengths."""
 _EYE = np.array([0.0, -math.cos(0.6), math.sin(0.6)])
 """Direction of the eye: in front of the board, and so high above it that no can hides another."""
-_ORDINALS = ("1st", "2nd", "3rd", "4th")
+_BEFORE = 0.4
+"""How much of the incline is seen before the start, for the names, in lengths of the race."""
+_BEHIND = 1.5 * RADIUS
+"""How far behind the axis of its can a plate ends, as drawn [m]."""
+_LATE = 0.4
+"""How long before the end of the film the plate of a can says that it comes too late [s]."""
+_ORDINALS = ("1st", "2nd", "3rd", "4th", "5th")
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,12 +44,15 @@ class Runner:
     colour: tuple[float, float, float]
     """Colour of its label, its name and its lines."""
     load: tuple[float, float, float] | None = None
-    """Colour of what is in it; None is that of beer or ice."""
+    """Colour of what is in it; None keeps that of beer or ice."""
     note: str = ""
-    """What else is to be known of it, such as "μ = 0.35"; it stands below the name."""
+    """What else to know about it, such as "μ = 0.35"; it stands below the name."""
 
     def finish(self, length: float) -> float:
-        """Return when the can has rolled a `length` [m] [s], infinity if its motion ends before."""
+        """Return the time [s] at which the can has come a `length` [m] down the incline.
+
+        It is infinity if its motion ends before.
+        """
         motion = self.trajectory
         beyond = motion.u - motion.u[0] - length
         passed = CubicHermiteSpline(motion.time, beyond, motion.u_dot).roots(extrapolate=False)
@@ -55,7 +68,7 @@ class Runner:
 
 
 class Result(NamedTuple):
-    """What a can's plate says from some time on."""
+    """What a can's plate says from a time on."""
 
     time: float
     """[s]."""
@@ -64,43 +77,52 @@ class Result(NamedTuple):
 
 @dataclass(frozen=True)
 class Race(Film):
-    """A film of several cans of one size that are let go together on one incline.
+    """A film of up to five cans of one radius that are let go together on one incline.
 
-    Each has its time by its name at the finish. With `centres` it is no race: the cans' centres of
-    mass are marked and joined, from one line on.
+    At the finish, each can's time is written below its name. With `centres` the film is no race:
+    the centres of mass of the loads start at one line, and are marked and joined.
+
+    Raises:
+      ParameterError: when it is planned, if the cans differ in their radii or inclines.
     """
 
     title: str
     runners: Callable[[], Sequence[Runner]]
     """A function that computes the motions, and that can be pickled."""
     length: float
-    """Distance from start to finish, or that is seen from the start on [m]."""
+    """Distance from the start to the finish, or, with `centres`, to the end of the picture [m]."""
     duration: float
     """[s]."""
     facts: str = ""
-    """What holds for all cans besides the incline, such as "all full"; it stands below the
+    """What is the same for all cans besides the incline, such as "all full"; it stands below the
     title."""
     centres: bool = False
+    """Whether the centres of mass are compared, in place of times."""
 
     def plan(self) -> RenderPlan:
-        return RenderPlan(0.0, self.duration, self.speed, partial(self._pictures, self.runners()))
+        runners = self.runners()
+        _check_equal_terms(runners)
+        return RenderPlan(0.0, self.duration, self.speed, partial(self._pictures, runners))
 
     def results(self, runners: Sequence[Runner]) -> list[Result]:
         """Return what each can's plate says from its finish on.
 
-        That of a can that comes too late says so from 0.4 s before the end on. Cans whose times are
-        the same as shown share a place.
+        Shortly before the end of the film, the plate of a can that arrives later says when. Cans
+        whose times are the same as shown share a place.
         """
         finishes = [runner.finish(self.length) for runner in runners]
         shown = [round(finish, 2) for finish in finishes]
         results = []
-        for finish, time in zip(finishes, shown, strict=True):
+        for runner, finish, time in zip(runners, finishes, shown, strict=True):
             if finish < self.duration:
-                place = _ORDINALS[sum(other < time for other in shown)]
+                quicker = sum(other < time for other in shown)
                 shared = "shared " if shown.count(time) > 1 else ""
-                results.append(Result(finish, f"{shared}{place}: {time:.2f} s"))
+                results.append(Result(finish, f"{shared}{_ORDINALS[quicker]}: {time:.2f} s"))
+            elif math.isfinite(finish):
+                results.append(Result(self.duration - _LATE, f"needs {time:.2f} s"))
             else:
-                results.append(Result(self.duration - 0.4, f"needs {time:.2f} s"))
+                end = runner.trajectory.time[-1]
+                results.append(Result(self.duration - _LATE, f"not there after {end:.2f} s"))
         return results
 
     def _pictures(
@@ -111,7 +133,7 @@ class Race(Film):
         display = self._display(runners)
         view = self._view(display, (width, height - top), top)
         positions = np.stack([runner.positions(times) for runner in runners], axis=1)
-        if self.centres:  # they begin at one line, while in a race the axes do
+        if self.centres:  # the centres of mass start at one line; in a race the axes do
             positions[..., 0] += [runner.trajectory.u[0] for runner in runners]
             results = [Result(math.inf, "")] * len(runners)
         else:
@@ -127,9 +149,8 @@ class Race(Film):
                 painter.paint(sheet, view, now)
                 draw_title(sheet, self.title, words, time, self.speed)
                 for lane, (runner, result) in enumerate(zip(runners, results, strict=True)):
-                    below_name = result.words if time >= result.time else runner.note
-                    place = self._plate_place(display, view, lane, now[lane][0])
-                    lines = [runner.name, below_name] if below_name else [runner.name]
+                    place = self._plate_place(display, view, lane, now[lane, 0])
+                    lines = _plate_lines(runner, result, time)
                     sheet.plate(place, lines, runner.colour, (1, 0.5))
                 if self.centres:
                     _join_centres(sheet, view, display, now)
@@ -138,19 +159,23 @@ class Race(Film):
 
     def _display(self, runners: Sequence[Runner]) -> Display:
         scenes = [runner.trajectory.scene for runner in runners]
-        display = Display(scenes, _APART, lines=[0.0] if self.centres else [0.0, self.length])
+        size = scale(scenes[0])
+        apart = _APART * size * max(scene.can.length for scene in scenes)
+        lines = [0.0] if self.centres else [0.0, self.length * size]
+        display = Display(scenes, apart, lines)
         display.paint([runner.colour for runner in runners], [runner.load for runner in runners])
         return display
 
     def _view(self, display: Display, pixels: tuple[int, int], top: int) -> View:
-        """Return the view of all lanes, with room for the names before the start."""
+        """Return the view of all lanes from before the start to the finish."""
         outlines = [
             display.outline(lane, np.array([u, 0.0, 0.0, 0.0]))
             for lane in range(len(display.lanes))
-            for u in (-0.4 * self.length, self.length)
+            for u in (-_BEFORE * self.length, self.length)
         ]
         points = np.reshape(outlines, (-1, 3))
-        eye = points.mean(axis=0) + 6 * self.length * _EYE
+        distance = _EYE_DISTANCE * self.length * scale(display.scenes[0])
+        eye = points.mean(axis=0) + distance * _EYE
         return View.towards(eye, points, pixels, top, margin=0.01)
 
     def _words(self, display: Display) -> str:
@@ -165,12 +190,39 @@ class Race(Film):
     def _plate_place(self, display: Display, view: View, lane: int, u: float) -> np.ndarray:
         """Return where a can's plate is: it travels behind the can, and stays at the finish."""
         scene = display.scenes[0]
-        along = min(u * scale(scene), self.length) - 1.5 * RADIUS
+        along = min(u, self.length) * scale(scene) - _BEHIND
         return view.pixel(in_space(scene, along, 0.0, display.lanes[lane]))
 
 
+def _plate_lines(runner: Runner, result: Result, time: float) -> list[str]:
+    """Return the lines of a can's plate at a time [s]: its name, and its note or its result."""
+    below = result.words if time >= result.time else runner.note
+    return [runner.name, below] if below else [runner.name]
+
+
+def _check_equal_terms(runners: Sequence[Runner]) -> None:
+    """Check that all cans have one radius, since they are drawn with one, and one incline.
+
+    Raises:
+      ParameterError: if they have not.
+    """
+    scenes = [runner.trajectory.scene for runner in runners]
+    first = scenes[0]
+    for scene in scenes:
+        if scene.can.radius != first.can.radius:
+            raise ParameterError(
+                "the cans of a race must have one radius, "
+                f"got {first.can.radius:g} m and {scene.can.radius:g} m"
+            )
+        if scene.incline != first.incline:
+            raise ParameterError(
+                "the cans of a race must be on one incline, "
+                f"got {first.incline:g} rad and {scene.incline:g} rad"
+            )
+
+
 def _join_centres(sheet: Sheet, view: View, display: Display, positions: np.ndarray) -> None:
-    """Mark the cans' centres of mass at their near ends, and join them."""
+    """Mark the loads' centres of mass on the near ends of the cans, and join them."""
     places = []
     for lane, (scene, position) in enumerate(zip(display.scenes, positions, strict=True)):
         u, phi, _, lift = position

@@ -5,7 +5,6 @@ whatever the scene's is: none is too small or too large for the single precision
 """
 
 import dataclasses
-import math
 from collections.abc import Sequence
 
 import mujoco
@@ -14,9 +13,10 @@ from PIL import Image
 from scipy.interpolate import CubicHermiteSpline
 
 from mjbeer.drawing import opengl
-from mjbeer.drawing.camera import View, circle, in_space, on_incline, scale
-from mjbeer.drawing.sheet import Colour, Sheet
-from mjbeer.exceptions import RenderingError
+from mjbeer.drawing.camera import View, circle, on_incline, scale
+from mjbeer.drawing.scenery import Scenery
+from mjbeer.drawing.sheet import Sheet
+from mjbeer.exceptions import ParameterError, RenderingError
 from mjbeer.model import looks
 from mjbeer.model.build import rolling_spec
 from mjbeer.model.joints import joint_addresses
@@ -26,33 +26,18 @@ from mjbeer.theory.can import RADIUS
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
 
-_UNSEEN = 5
-"""The group of geoms that are not drawn. Each can is in one of the groups before it."""
-_STRIPE = math.pi / 2 * RADIUS
-"""Length of a stripe of the board [m]. A pale one begins at x = 0, as in the templates."""
-_PALE = np.array([0.94, 0.84, 0.69])
-_DARK = np.array([0.84, 0.71, 0.54])
-"""Colours of the stripes, as in mjcf/assets.xml."""
-_SQUARE = 0.1
-"""Distance of the lines on the wall [m]; x = 0 is half-way between two of them."""
-_WALL = np.array([0.985, 0.99, 1.0])
-_GRID = np.array([0.84, 0.87, 0.92])
-"""Colours of the wall and of its lines, as in mjcf/scene.xml."""
-_PAINT = np.array([0.15, 0.17, 0.2])
-"""Colour of lines across the board, such as the start of a race."""
-_STROKE = 0.003
-"""Half the width of these lines [m]."""
-_NEAR = np.array([0.0, -1.0, 0.0])
-"""Unit vector towards the reader."""
+_UNSEEN = mujoco.mjNGROUP - 1
+"""The group of geoms that are not drawn. Each can has one of the groups before it to itself."""
+_PALER = 0.35
+"""How far the colour of foam is on the way from its load's to white."""
 
 
-def coordinates(trajectory: Trajectory, times: np.ndarray) -> np.ndarray:
+def coordinates(motion: Trajectory, times: np.ndarray) -> np.ndarray:
     """Return u [m], phi [rad], roll [rad] and lift [m] at some times [s], shape (times, 4).
 
-    Between samples each is the cubic with their values and rates, whose error falls as the
-    interval's fourth power.
+    Between two samples each is the cubic that has their values and rates; its error falls with the
+    fourth power of the interval.
     """
-    motion = trajectory
     samples = np.stack([motion.u, motion.phi, motion.roll, motion.lift], axis=1)
     if len(samples) == 1:
         return np.repeat(samples, len(times), axis=0)
@@ -61,9 +46,10 @@ def coordinates(trajectory: Trajectory, times: np.ndarray) -> np.ndarray:
 
 
 class Display:
-    """A board with cans of one size on it, and a wall behind.
+    """A model of a board with cans on it, and a wall behind.
 
-    Joints are named as in the templates, with a prefix for each lane. All lengths are as drawn.
+    All cans are drawn with one radius. Joints are named as in the templates, with a prefix for
+    each lane. Lengths are as drawn.
     """
 
     def __init__(
@@ -72,10 +58,14 @@ class Display:
         """Make the display of cans on one incline, `apart` [m] from each other, the nearest first.
 
         At each distance [m] down the incline in `lines` a line crosses the board.
+
+        Raises:
+          ParameterError: if there are more than five cans: each must be drawn by itself.
         """
+        if len(scenes) > _UNSEEN:
+            raise ParameterError(f"at most {_UNSEEN} cans can be drawn together, got {len(scenes)}")
         self.scenes = scenes
         self.lanes = [lane * apart for lane in range(len(scenes))]
-        self._lines = lines
         first, *others = (_drawn_spec(scene, group) for group, scene in enumerate(scenes))
         parent = first.body("incline") or first.worldbody
         for number, spec in enumerate(others, start=1):
@@ -88,19 +78,21 @@ class Display:
         first.geom("wall").pos += [0, self.lanes[-1], 0]
         self.model = compile_spec(first)
         self.data = mujoco.MjData(self.model)
+        self.scenery = Scenery(self.model, scenes[0], lines)
 
     def paint(
         self, labels: Sequence[Sequence[float]], loads: Sequence[Sequence[float] | None]
     ) -> None:
-        """Give each can's label a colour, and its load too unless that is None.
+        """Give the label of each can a colour, and each load, unless its colour is None.
 
-        What is on a load that has a colour is paler.
+        The foam on a load gets a paler shade of its colour.
         """
         for number, (label, load) in enumerate(zip(labels, loads, strict=True)):
             self.model.mat(_prefix(number) + "label").rgba[:3] = label
             if load is not None:
-                self._paint_geom(_prefix(number) + "load", np.array(load))
-                self._paint_geom(_prefix(number) + "foam", np.array(load) * (1 - 0.35) + 0.35)
+                colour = np.array(load)
+                self._paint_geom(_prefix(number) + "load", colour)
+                self._paint_geom(_prefix(number) + "foam", colour + _PALER * (1 - colour))
 
     def _paint_geom(self, name: str, colour: np.ndarray) -> None:
         """Give the material of a geom a colour, if there is this geom."""
@@ -143,95 +135,6 @@ class Display:
         ring = on_incline(scene, u, RADIUS + lift) + edge
         return np.stack([np.insert(ring, 1, y, axis=1) for y in self.ends(number)])
 
-    def draw_empty(self, sheet: Sheet, view: View) -> None:
-        """Draw wall and board, flat, ten times as fast as OpenGL.
-
-        The rows above and below the view are not kept.
-        """
-        self._draw_wall(sheet, view)
-        self._draw_board(sheet, view)
-
-    def _draw_wall(self, sheet: Sheet, view: View) -> None:
-        y = float(self.model.geom("wall").pos[1])
-        corners = view.corners(y)
-        left, low = corners.min(axis=0)
-        right, high = corners.max(axis=0)
-        upright = [[(x, low), (x, high)] for x in _grid(left, right)]
-        level = [[(left, z), (right, z)] for z in _grid(low, high)]
-        lines = np.reshape(upright + level, (-1, 2, 2))
-        sheet.area(view.pixel(np.insert(corners, 1, y, axis=-1)), self.lit(_WALL, _NEAR, view))
-        places = view.pixel(np.insert(lines, 1, y, axis=-1))
-        width = _SQUARE / 64 * view.scale(np.array([left, y, low]))
-        sheet.line(_separated(places), width, self.lit(_GRID, _NEAR, view))
-
-    def _draw_board(self, sheet: Sheet, view: View) -> None:
-        """Draw the upper side of the board and its front: every eye sees these two."""
-        board = self.model.geom("board")
-        front = board.pos[1] - board.size[1]
-        back = board.pos[1] + board.size[1]
-        under = board.pos[2] - board.size[2]
-        over = board.pos[2] + board.size[2]
-        scene = self.scenes[0]
-        seen = np.concatenate([view.corners(front), view.corners(back)])
-        along = seen @ on_incline(scene, 1.0, 0.0)
-        stripes = _STRIPE * np.arange(along.min() // _STRIPE - 1, along.max() // _STRIPE + 2)
-        dark = stripes[np.round(stripes / _STRIPE) % 2 == 1]
-
-        def bands(begin: np.ndarray, length: float, y: float, z: float) -> np.ndarray:
-            """Return the places of bands that begin somewhere down the incline.
-
-            They run from the upper front edge of the board to the edge at `y` and `z`.
-            """
-            end = begin + length
-            corners = [
-                in_space(scene, begin, over, front),
-                in_space(scene, end, over, front),
-                in_space(scene, end, z, y),
-                in_space(scene, begin, z, y),
-            ]
-            return _separated(view.pixel(np.stack(corners, axis=1)))
-
-        up = in_space(scene, 0.0, 1.0, 0.0)
-        whole = float(np.ptp(stripes))
-        lines = np.array(self._lines) - _STROKE
-        sheet.area(bands(stripes[:1], whole, back, over), self.lit(_PALE, up, view))
-        sheet.area(bands(dark, _STRIPE, back, over), self.lit(_DARK, up, view))
-        if len(lines):
-            sheet.area(bands(lines, 2 * _STROKE, back, over), self.lit(_PAINT, up, view))
-        sheet.area(bands(stripes[:1], whole, front, under), self.lit(_PALE, _NEAR, view))
-        sheet.area(bands(dark, _STRIPE, front, under), self.lit(_DARK, _NEAR, view))
-
-    def shade(self, sheet: Sheet, view: View, outline: np.ndarray) -> None:
-        """Draw the shadow on the board of a can with an outline, as `Display.outline` gives it."""
-        scene = self.scenes[0]
-        along = in_space(scene, 1.0, 0.0, 0.0)
-        up = in_space(scene, 0.0, 1.0, 0.0)
-        light = self.model.light_dir[0]
-        board = self.model.geom("board")
-        height = outline @ up - board.pos[2] - board.size[2]
-        near, far = outline - np.multiply.outer(height / (light @ up), light)
-        corners = np.array(
-            [
-                near[(near @ along).argmin()],
-                near[(near @ along).argmax()],
-                far[(far @ along).argmax()],
-                far[(far @ along).argmin()],
-            ]
-        )
-        middle = corners.mean(axis=0)
-        for share in (0.8, 0.95):  # its edge is soft
-            shadow = middle + share * (corners - middle)
-            sheet.area(view.pixel(shadow), (0.25, 0.15, 0.05), alpha=0.16)
-
-    def lit(self, colour: np.ndarray, normal: np.ndarray, view: View) -> Colour:
-        """Return the colour of a face with a `normal`, lit by the sun and from the eye."""
-        model = self.model
-        head = model.vis.headlight
-        sun = model.light_diffuse[0] * max(0.0, -normal @ model.light_dir[0])
-        light = head.ambient + head.diffuse * max(0.0, float(normal @ view.axes[2])) + sun
-        red, green, blue = np.minimum(colour * light, 1.0).tolist()
-        return red, green, blue
-
 
 def _drawn_spec(scene: Scene, group: int) -> mujoco.MjSpec:
     """Return what is drawn of a scene, with the geoms of its can in a group."""
@@ -243,7 +146,7 @@ def _drawn_spec(scene: Scene, group: int) -> mujoco.MjSpec:
         spec.delete(pair)
     for geom in spec.geoms:
         of_can = geom.group == looks.VISUAL_GROUP and geom.name not in ("board", "wall")
-        geom.group = group % _UNSEEN if of_can else _UNSEEN
+        geom.group = group if of_can else _UNSEEN
     return spec
 
 
@@ -265,41 +168,27 @@ def _resize(scene: Scene) -> Scene:
 
 
 def _prefix(number: int) -> str:
-    """Return with what the names begin that belong to a lane."""
+    """Return what the names in a lane begin with."""
     return f"{number}-" if number else ""
-
-
-def _grid(low: float, high: float) -> np.ndarray:
-    """Return the places of the lines on the wall between two places [m]."""
-    first, last = np.floor(np.array([low, high]) / _SQUARE + 0.5)
-    return _SQUARE * (np.arange(first, last) + 0.5)
-
-
-def _separated(shapes: np.ndarray) -> np.ndarray:
-    """Return lines or polygons of shape (n, k, 2) as one path, with gaps (NaN)."""
-    gap = np.full_like(shapes[:, :1], np.nan)
-    return np.concatenate([shapes, gap], axis=1).reshape(-1, 2)
 
 
 class Painter:
     """Draws the cans of a display by OpenGL, and lays them on wall and board.
 
-    It holds graphics memory until closed.
-
-    It replaces mujoco.Renderer, which can only use the OpenGL that MUJOCO_GL named when MuJoCo was
-    imported.
+    It holds graphics memory until it is closed. It stands in for `mujoco.Renderer`, which can only
+    use the OpenGL that MUJOCO_GL named when MuJoCo was imported.
     """
 
     def __init__(self, display: Display, pixels: tuple[int, int], still: bool = True) -> None:
-        """Prepare to draw pictures of at most some `pixels`, all with one view if `still`."""
+        """Prepare to draw pictures of at most so many `pixels`, all with one view if `still`."""
         self._display = display
         self._still = still
         self._empty: np.ndarray | None = None
         model = display.model
         model.vis.global_.offwidth = 2 * pixels[0]
         model.vis.global_.offheight = 2 * pixels[1]
-        # Pictures are drawn with twice as many pixels each way, which takes less time than samples
-        # and shows more.
+        # Pictures are drawn with twice as many pixels each way and then reduced, which takes less
+        # time than multisampling and shows more.
         model.vis.quality.offsamples = 0
         model.vis.quality.shadowsize = 0  # no light casts one
         self._option = mujoco.MjvOption()
@@ -320,7 +209,7 @@ class Painter:
         if self._empty is not None:
             sheet.put(self._empty, view.top)
         else:
-            self._display.draw_empty(sheet, view)
+            self._display.scenery.draw(sheet, view)
             if self._still:
                 self._empty = sheet.part(view.top, view.top + view.pixels[1])
         self._display.pose(positions)
@@ -328,21 +217,22 @@ class Painter:
             self._display.outline(number, position) for number, position in enumerate(positions)
         ]
         for outline in outlines:
-            self._display.shade(sheet, view, outline)
-        for number in reversed(range(len(outlines))):  # the nearest at last
+            self._display.scenery.shade(sheet, view, outline)
+        for number in reversed(range(len(outlines))):  # the nearest comes last
             edges = view.edges(outlines[number], margin=3)
             if edges.right > edges.left and edges.lower > edges.upper:
                 can = self._draw(view.crop(edges), number)
                 sheet.composite(can, edges.left, view.top + edges.upper)
 
     def _draw(self, view: View, number: int) -> np.ndarray:
-        """Return a can in a view, shape (height, width, 4), uint8.
+        """Return the picture of a can in a view, shape (height, width, 4), uint8.
 
-        The last channel is how much the can covers."""
+        The last channel is how much the can covers.
+        """
         from OpenGL import GL
 
         self._option.geomgroup[:] = 0
-        self._option.geomgroup[number % _UNSEEN] = 1
+        self._option.geomgroup[number] = 1
         mujoco.mjv_updateScene(
             self._display.model,
             self._display.data,
@@ -363,13 +253,13 @@ class Painter:
         fine = np.empty((height, width, 4), np.uint8)
         GL.glBindFramebuffer(GL.GL_READ_FRAMEBUFFER, self._context.offFBO)
         GL.glReadPixels(0, 0, width, height, GL.GL_RGBA, GL.GL_UNSIGNED_BYTE, fine)
-        # As red, green, blue and padding, for Pillow divides colours by what it takes for their
+        # Pillow is told that the fourth channel is padding: it would divide the colours by an
         # opacity.
         whole = Image.frombuffer("RGBX", (width, height), fine, "raw", "RGBX", 0, -1)
         return np.asarray(whole.reduce(2))
 
     def _place_eye(self, view: View) -> None:
-        """Let the scene be seen in a view, by light from its eye."""
+        """Put the two eyes and the headlight of MuJoCo's scene where the eye of the view is."""
         # Nothing is drawn nearer to the eye than this, or beyond `frustum_far`.
         near = 0.2 * view.distance
         for eye in self._scene.camera:  # two of them, for stereo; MuJoCo draws their mean

@@ -23,8 +23,20 @@ Pair = np.ndarray | tuple[float, float]
 
 INK = "#1f2933"
 """Colour of texts, and of lines that explain."""
-_HALO = 2  # width of the white edge around a text that may lie on anything [pixels]
-_HEAD = 3.2  # length of an arrow's head, in widths of its line
+_HALO = 2
+"""Width of the white edge around a text that may lie on anything [pixels]."""
+_HEAD = 3.2
+"""Length of an arrow's head, in widths of its line."""
+_HEADING = 1.2
+"""Size of the first line on a plate, in units."""
+_TEXT = 1.05
+"""Size of its other lines, in units."""
+_LINE = 1.5
+"""Height of a line on a plate, in units."""
+_ASIDE = 0.6
+"""Distance of the lines from the left and the right edge of a plate, in units."""
+_ABOVE = 0.25
+"""Distance of the lines from the upper and the lower edge of a plate, in units."""
 
 
 class Box(NamedTuple):
@@ -46,12 +58,13 @@ class Sheet:
         self.width = width
         self.height = height
         self.unit = height / 34
-        """The unit of letters and margins [pixels]."""
+        """The unit of letters and margins [pixels]: the sheet is 34 of them high."""
         self.boxes: list[Box] = []
         """The boxes of all texts on this picture, and of other places where no text may be."""
         self._renderer = RendererAgg(width, height, 72)  # at 72 dots per inch a point is a pixel
         self._pixels = np.asarray(self._renderer.buffer_rgba())
         self._pixels[:] = 255
+        # The renderer counts rows from below.
         self._flip = Affine2D().scale(1, -1).translate(0, height)
         self._pasting = self._renderer.new_gc()
 
@@ -66,7 +79,8 @@ class Sheet:
     def composite(self, picture: np.ndarray, left: int, top: int) -> None:
         """Lay a picture of shape (height, width, 4), uint8, on the sheet.
 
-        Its last channel is how much it covers; its colours are already darker by that share.
+        Its last channel is how much it covers, up to 255. Its colours are multiplied by that share
+        already.
         """
         rows, columns, _ = picture.shape
         below = self._pixels[top : top + rows, left : left + columns]
@@ -82,7 +96,7 @@ class Sheet:
     def picture(self) -> np.ndarray:
         """Return a copy of what is on the sheet, shape (height, width, 3), uint8.
 
-        The sheet forgets where its texts are, for the next picture.
+        The list of `boxes` is emptied for the next picture.
         """
         self.boxes.clear()
         size = (self.width, self.height)
@@ -98,9 +112,9 @@ class Sheet:
         alpha: float = 1.0,
         dashes: Sequence[float] = (),
     ) -> None:
-        """Draw a line through places of shape (n, 2).
+        """Draw a line through places of shape (n, 2), with a gap at each that is NaN.
 
-        `dashes` are the lengths of its parts, drawn and left out in turn, in widths of the line.
+        `dashes` are the lengths of what is drawn and left out in turn, in widths of the line.
         """
         pen = self._pen(width, colour, alpha)
         if dashes:
@@ -108,7 +122,7 @@ class Sheet:
         self._renderer.draw_path(pen, Path(places), self._flip)
 
     def area(self, places: np.ndarray, colour: Colour, alpha: float = 1.0) -> None:
-        """Fill the polygon with corners at places of shape (n, 2)."""
+        """Fill the polygon with corners at places of shape (n, 2), or polygons with NaN between."""
         pen = self._pen(0, colour, alpha)
         polygon = Path(places, closed=False)
         self._renderer.draw_path(pen, polygon, self._flip, to_rgba(colour, alpha))
@@ -120,7 +134,7 @@ class Sheet:
         self._renderer.draw_path(pen, Path.unit_circle(), shape, to_rgba(colour))
 
     def arrow(self, tail: np.ndarray, tip: np.ndarray, width: float, colour: Colour) -> None:
-        """Draw an arrow. One that is shorter than its head is drawn as a smaller arrow."""
+        """Draw an arrow. One that would be shorter than its head is made smaller as a whole."""
         along = np.asarray(tip) - tail
         length = float(np.hypot(*along))
         if length < 1:
@@ -180,15 +194,19 @@ class Sheet:
         `anchor` is the point of the plate that lies at the place, as for texts.
         """
         unit = self.unit
-        first, *others = lines
-        widths = [self.box((0, 0), first, 1.2 * unit, bold=True).right]
-        widths += [self.box((0, 0), line, 1.05 * unit).right for line in others]
-        size = np.array([max(widths) + 1.2 * unit, (1.5 * len(lines) + 0.5) * unit])
-        corner = place - np.multiply(anchor, size)
-        self.area(corner + np.array([[0, 0], [1, 0], [1, 1], [0, 1]]) * size, ground)
-        self.text(corner + np.array([0.6, 1]) * unit, first, 1.2 * unit, colour, bold=True)
+        large = _HEADING * unit
+        small = _TEXT * unit
+        heading, *others = lines
+        widths = [self.box((0, 0), heading, large, bold=True).right]
+        widths += [self.box((0, 0), line, small).right for line in others]
+        width = max(widths) + 2 * _ASIDE * unit
+        height = (_LINE * len(lines) + 2 * _ABOVE) * unit
+        corner = place - np.multiply(anchor, (width, height))
+        self.area(corner + np.array([[0, 0], [width, 0], [width, height], [0, height]]), ground)
+        begin = corner + np.array([_ASIDE, _ABOVE + _LINE / 2]) * unit
+        self.text(begin, heading, large, colour, bold=True)
         for number, line in enumerate(others, start=1):
-            self.text(corner + np.array([0.6, 1.5 * number + 1]) * unit, line, 1.05 * unit)
+            self.text(begin + np.array([0, number * _LINE * unit]), line, small)
 
     def _paste(self, text: np.ndarray, box: Box) -> None:
         """Lay a text, which has room for a halo, on the sheet where its box is."""
@@ -208,7 +226,7 @@ class Sheet:
 
 
 def overlap(one: Box, other: Box) -> bool:
-    """Return whether two boxes have a point in common."""
+    """Return whether two boxes have an area in common."""
     in_columns = min(one.right, other.right) > max(one.left, other.left)
     in_rows = min(one.bottom, other.bottom) > max(one.top, other.top)
     return in_columns and in_rows
@@ -223,9 +241,9 @@ def _size(words: str, size: float, bold: bool) -> tuple[int, int]:
 
 @lru_cache(maxsize=512)
 def _rasterize(words: str, size: float, bold: bool, edge: int, colour: Colour) -> np.ndarray:
-    """Return a text with an edge as red, green, blue and opacity, uint8, the lowest row first.
+    """Return a text as a picture of red, green, blue and opacity, uint8, the lowest row first.
 
-    It has room for a halo on all sides.
+    Its letters are wider by an `edge` [pixels] all around. There is room for a halo on all sides.
     """
     width, height = _size(words, size, bold)
     opacity = Image.new("L", (width + 2 * _HALO, height + 2 * _HALO))
@@ -238,13 +256,13 @@ def _rasterize(words: str, size: float, bold: bool, edge: int, colour: Colour) -
 
 @cache
 def _font(size: float, bold: bool) -> ImageFont.FreeTypeFont:
-    """Return the font that comes with matplotlib, in whole pixels.
+    """Return the font that comes with matplotlib, with a size rounded to whole pixels.
 
-    A system may have another font of that name.
+    The system may have another font of that name.
     """
     name = "DejaVuSans-Bold.ttf" if bold else "DejaVuSans.ttf"
     path = pathlib.Path(get_data_path()) / "fonts" / "ttf" / name
-    # Pillow's other layout sets letters elsewhere, and falls back where the system has no FriBiDi,
-    # which it needs.
+    # Pillow's other layout needs FriBiDi, and falls back to this one on a system without it: then
+    # letters would not be in the same places everywhere.
     layout = ImageFont.Layout.BASIC
     return ImageFont.truetype(path, max(1, round(size)), layout_engine=layout)

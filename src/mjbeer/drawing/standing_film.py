@@ -1,4 +1,4 @@
-"""The film of a can that stands, and whose liquid is let go with a tilted surface."""
+"""The film of a can that stands, whose liquid is let go with a tilted surface."""
 
 import contextlib
 import math
@@ -17,7 +17,7 @@ from mjbeer.drawing.film import Film, RenderPlan
 from mjbeer.drawing.overlay import HEIGHT, STRIP, draw_title
 from mjbeer.drawing.sheet import Sheet
 from mjbeer.drawing.strip import Chart, ChartStrip, Line
-from mjbeer.exceptions import ParameterError, RenderingError
+from mjbeer.exceptions import RenderingError
 from mjbeer.model.attach import surface_slope
 from mjbeer.model.build import build
 from mjbeer.model.setting import MujocoIntegrator
@@ -29,7 +29,11 @@ from mjbeer.theory.standing import QUANTITATIVE, Standing
 _FIELD_OF_VIEW = 32.0
 """Angle of the picture's height, seen from the eye [degrees]."""
 _ROOM = 1.5
-"""Height of the picture, divided by the can's length or its width."""
+"""Height of the picture, divided by the can's length or its width, whichever is larger."""
+_LOOK_AT = 0.45
+"""Height of the middle of the picture above the bottom, divided by the can's length."""
+_DOWN = 14.0
+"""How far the eye looks down [degrees]."""
 
 
 class Slosh(NamedTuple):
@@ -40,13 +44,13 @@ class Slosh(NamedTuple):
     qpos: np.ndarray
     """Coordinates of the model, shape (samples, nq)."""
     rise: np.ndarray
-    """How high the surface rises at the wall towards +x, in radii, shape (samples,)."""
+    """How high the surface rises at the wall towards +x, divided by R, shape (samples,)."""
 
 
 def slosh(can: Standing, model: mujoco.MjModel, duration: float) -> Slosh:
-    """Return how the liquid of a model of a can that is held moves for a `duration` [s].
+    """Return how the liquid of a can that is held moves for a `duration` [s] in its model.
 
-    It is let go at rest, in its first mode, with a surface that rises by 0.1 R at the wall.
+    It is let go at rest in its first mode, with a surface that rises by 0.1 R at the wall.
     """
     data = mujoco.MjData(model)
     if can.moving_modes > 0:
@@ -65,7 +69,7 @@ def slosh(can: Standing, model: mujoco.MjModel, duration: float) -> Slosh:
 
 @dataclass(frozen=True)
 class StandingFilm(Film):
-    """The film of a can that is held, and whose liquid is let go with a rise of 0.1 R."""
+    """The film of a can that is held, whose liquid is let go with a rise of 0.1 R at the wall."""
 
     can: Standing
     duration: float = DURATION
@@ -76,7 +80,7 @@ class StandingFilm(Film):
 
     def plan(self) -> RenderPlan:
         duration = require.positive("duration", self.duration, "s")
-        # Held, for on a soft floor a can rocks a little, and this damps the slosh.
+        # The can is held: on a soft floor it would rock a little, which damps the slosh.
         model = build(
             self.can,
             visuals=True,
@@ -84,24 +88,21 @@ class StandingFilm(Film):
             timestep=self.timestep,
             free=False,
         )
-        return RenderPlan(0.0, duration, self.speed, partial(self._pictures, model))
+        motion = slosh(self.can, model, duration)
+        draw = partial(self._pictures, model, motion)
+        return RenderPlan(0.0, duration, self.speed, draw)
 
     def _pictures(
-        self, model: mujoco.MjModel, times: np.ndarray, width: int, height: int
+        self, model: mujoco.MjModel, motion: Slosh, times: np.ndarray, width: int, height: int
     ) -> Generator[np.ndarray]:
         can = self.can
-        motion = slosh(can, model, self.duration)
         sheet = Sheet(width, height)
         top = round(HEIGHT * sheet.unit)
         below = round(STRIP * sheet.unit)
-        lines = [Line("MuJoCo", motion.time, motion.rise, COLOURS[0])]
-        if can.moving_modes > 0:
-            lines.append(Line("theory", motion.time, free_decay(can, motion.time)))
-        chart = Chart("rise at the right wall [R]", lines, least=2 * QUANTITATIVE)
-        strip = ChartStrip([chart], width, below)
+        strip = ChartStrip([_rise_chart(can, motion)], width, below)
         title = f"A can of {can.name} that stands"
-        frequency = f"{can.frequencies(1)[0] / (2 * math.pi):.2f} Hz"
-        words = f"{100 * can.fill:.3g} % full; linear theory says {frequency}"
+        frequency = can.frequencies(1)[0] / math.tau
+        words = f"{100 * can.fill:.3g} % full; linear theory says {frequency:.2f} Hz"
         data = mujoco.MjData(model)
         with contextlib.closing(_Camera(can, model, (width, height - top - below))) as camera:
             for time in times:
@@ -113,8 +114,19 @@ class StandingFilm(Film):
                 yield sheet.picture()
 
 
+def _rise_chart(can: Standing, motion: Slosh) -> Chart:
+    """Return the chart of the rise at the right wall, beside linear theory if the liquid moves."""
+    lines = [Line("MuJoCo", motion.time, motion.rise, COLOURS[0])]
+    if can.moving_modes > 0:
+        lines.append(Line("theory", motion.time, free_decay(can, motion.time)))
+    return Chart("rise at the right wall [R]", lines, least=2 * QUANTITATIVE)
+
+
 def free_decay(can: Standing, time: np.ndarray) -> np.ndarray:
-    """Return the rise at the wall by linear theory, in radii, of a can that is held."""
+    """Return the rise at the wall of a can that is held, by linear theory, in radii.
+
+    It is that of a damped oscillator, the first mode, which is let go at rest at 0.1 R.
+    """
     omega = can.frequencies(1)[0]
     ratio = can.damping_ratios(1)[0]
     damped = omega * math.sqrt(1 - ratio**2)
@@ -124,20 +136,23 @@ def free_decay(can: Standing, time: np.ndarray) -> np.ndarray:
 
 
 class _Camera:
-    """Draws a model by OpenGL, seen from the side. It holds graphics memory until it is closed."""
+    """Draws a model by OpenGL, seen from the side and a little from above.
+
+    It holds graphics memory until it is closed.
+    """
 
     def __init__(self, can: Standing, model: mujoco.MjModel, pixels: tuple[int, int]) -> None:
         """Prepare pictures of so many `pixels`."""
         self._model = model
         self._pixels = pixels
-        self._scene = mujoco.MjvScene(model, model.ngeom + 10)
+        self._scene = mujoco.MjvScene(model, model.ngeom)
         self._view = mujoco.MjvCamera()
         size = max(can.can.length, 2 * can.can.radius)
         half_angle = math.radians(_FIELD_OF_VIEW / 2)
-        self._view.lookat[:] = [0, 0, 0.45 * can.can.length]
+        self._view.lookat[:] = [0, 0, _LOOK_AT * can.can.length]
         self._view.distance = _ROOM * size / (2 * math.tan(half_angle))
-        self._view.azimuth = 90
-        self._view.elevation = -14
+        self._view.azimuth = 90  # along y, with x to the right
+        self._view.elevation = -_DOWN
         model.vis.global_.fovy = _FIELD_OF_VIEW
         model.vis.global_.offwidth, model.vis.global_.offheight = pixels
         self._gl = opengl.context()
@@ -182,10 +197,7 @@ def render_standing(
       RenderingError: if OpenGL or ffmpeg does not work; the message says what to do.
       OutputError: if the file cannot be written.
     """
-    target = require.path(path)
-    if target.suffix.lower() != ".mp4":
-        name = require.format_value(str(path))
-        raise ParameterError(f"the file's name must end in .mp4, got {name}")
+    target = video.file_path(path)
     plan = film.plan()
-    with terminal.progress_bar(terminal.STDERR, len(plan.times(fps))) as begin:
-        video.write(plan, target, width, height, fps, begin)
+    with terminal.progress_bar(terminal.STDERR, len(plan.times(fps))) as show_progress:
+        video.write(plan, target, width, height, fps, show_progress)

@@ -1,11 +1,10 @@
 """The strip below a film: charts of quantities over time, each with a dot in step with the film."""
 
 import contextlib
-import dataclasses
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from matplotlib import rc_context
@@ -15,16 +14,18 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.transforms import BboxBase, Transform
 
+from mjbeer.drawing.quantities import INTERVALS, QUANTITIES
 from mjbeer.drawing.sheet import Colour, Sheet
 from mjbeer.exceptions import MjbeerError
 from mjbeer.output.plots import COLOURS, STYLE
-from mjbeer.theory.scene import GRAVITY
 from mjbeer.theory.trajectory import Trajectory, exact_motion
 
-_THEORY = "#b4bcc8"  # colour of theory's lines, which are wide and lie below
-_MARKED = "#fff1b8"  # ground of the times at which something happens
-_LETTERS = 1.15  # height of letters, in units
-_INTERVALS = 50  # forces are means over a motion's duration divided by this
+_THEORY = "#b4bcc8"
+"""Colour of theory's lines, which are wide and lie below the others."""
+_MARKED = "#fff1b8"
+"""Ground of the times at which something happens."""
+_LETTERS = 1.15
+"""Height of the letters, in units: tenths of the strip's height."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +38,7 @@ class Line:
     values: np.ndarray
     """Values at these times."""
     colour: Colour | None = None
-    """None for theory's line, which is seen from the beginning."""
+    """None is for theory's line, which is seen from the beginning."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +46,7 @@ class Chart:
     """A chart over time."""
 
     title: str
-    """What it shows, with letter and unit."""
+    """What it shows, with its letter and unit."""
     lines: Sequence[Line]
     low: float = -math.inf
     """Least value that the chart has room for."""
@@ -55,102 +56,8 @@ class Chart:
     """Least range of values that it shows: a straight line must not look like a crooked one."""
 
 
-class Quantity(NamedTuple):
-    """A quantity of a motion that a chart can show."""
-
-    title: str
-    """What it is, with letter and unit."""
-    values: Callable[[Trajectory], np.ndarray]
-    """Returns its values at the samples of a motion, shape (samples,)."""
-    low: float = -math.inf
-    high: float = math.inf
-    least: float = 0.0
-    """`low`, `high` and `least` are the limits of its chart, as in `Chart`."""
-
-
-def wrapped(angle: np.ndarray | float) -> np.ndarray:
-    """Return an angle [rad] in degrees between -180 and 180."""
-    return (np.degrees(angle) + 180) % 360 - 180
-
-
-def mean_motion(motion: Trajectory, time: np.ndarray) -> np.ndarray:
-    """Return the places [m] at some times [s] of a can that accelerates evenly.
-
-    The motion swings about it. This can starts with the same momentum, and with its load at rest in
-    it where the load has an equilibrium. It has neither damping nor drag, so that the motion falls
-    behind it by what they cost.
-    """
-    scene = motion.scene
-    u = motion.u[0]
-    u_dot = motion.u_dot[0]
-    if scene.dissipates:
-        scene = dataclasses.replace(scene, damping=0.0, drag=0.0)
-    if scene.attachment == "sliding":
-        swing = scene.load.moment / scene.effective_mass
-        u = u - swing * (math.sin(motion.phi[0]) - math.sin(scene.equilibrium()))
-        u_dot = u_dot - swing * math.cos(motion.phi[0]) * motion.phi_dot[0]
-    since = time - motion.time[0]
-    return u + u_dot * since + scene.acceleration() * since**2 / 2
-
-
-class MeanForces(NamedTuple):
-    """Forces of the incline on the can, in weights of can and load, shape (samples,)."""
-
-    normal: np.ndarray
-    friction: np.ndarray
-    """It is positive up the incline."""
-
-
-def mean_forces(motion: Trajectory) -> MeanForces:
-    """Return the mean forces around each sample, also of a can that slips or flies.
-
-    They follow from the change of momentum over a fiftieth of the motion. A can that hardly presses
-    on the ground rises and lands many times a second, and each landing is a blow. Without gravity
-    the unit is the weight on earth.
-    """
-    scene = motion.scene
-    moment = scene.load.moment
-    away = scene.mass * motion.lift_dot + moment * np.sin(motion.phi) * motion.phi_dot
-    downhill = scene.mass * motion.u_dot - moment * np.cos(motion.phi) * motion.phi_dot
-    weight = scene.mass * scene.gravity
-    normal = weight * math.cos(scene.incline) + _mean_rate(motion.time, away)
-    friction = weight * math.sin(scene.incline) + _mean_rate(motion.time, -downhill)
-    unit = scene.mass * (scene.gravity or GRAVITY)
-    return MeanForces(normal / unit, friction / unit)
-
-
-def _mean_rate(time: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Return the mean rate of change of values around each time."""
-    half = np.ptp(time) / _INTERVALS / 2
-    before = np.maximum(time - half, time[0])
-    after = np.minimum(time + half, time[-1])
-    return (np.interp(after, time, values) - np.interp(before, time, values)) / (after - before)
-
-
-QUANTITIES = {
-    "phi": Quantity("angle of the load, φ [°]", lambda motion: wrapped(motion.phi), least=10.0),
-    "u": Quantity("distance [m]", lambda motion: motion.u - motion.u[0]),
-    "u_dot": Quantity("speed [m/s]", lambda motion: motion.u_dot),
-    "ahead": Quantity(
-        "ahead of even acceleration [mm]",
-        lambda motion: 1e3 * (motion.u - mean_motion(motion, motion.time)),
-    ),
-    "normal": Quantity(
-        "normal force, N [weights]",
-        lambda motion: mean_forces(motion).normal,
-        low=-1.0,
-        high=4.0,  # the blow of a landing goes beyond
-    ),
-    "lift": Quantity("height of flight [mm]", lambda motion: 1e3 * motion.lift),
-    "slip": Quantity(
-        "slid instead of rolled [mm]", lambda motion: 1e3 * (motion.slip - motion.slip[0])
-    ),
-}
-"""What a chart can show, by name."""
-
-
 def charts(trajectory: Trajectory, names: Sequence[str]) -> list[Chart]:
-    """Return the charts of quantities named in QUANTITIES, with what theory says."""
+    """Return charts of the quantities of these names in QUANTITIES, with theory's lines."""
     theory = _theory(trajectory)
     return [_chart(trajectory, theory, name) for name in names]
 
@@ -165,7 +72,7 @@ def _chart(trajectory: Trajectory, theory: Trajectory | None, name: str) -> Char
         lines.append(Line("theory", theory.time[rolls], quantity.values(theory)[rolls]))
     title = quantity.title
     if name == "normal" and trajectory.rolling == "contact":
-        window = np.ptp(trajectory.time) / _INTERVALS
+        window = np.ptp(trajectory.time) / INTERVALS
         title = f"N [weights], {1e3 * window:.2g} ms means"
     if values.max() > quantity.high:
         title += f", up to {values.max():.0f}"
@@ -173,7 +80,10 @@ def _chart(trajectory: Trajectory, theory: Trajectory | None, name: str) -> Char
 
 
 def _theory(trajectory: Trajectory) -> Trajectory | None:
-    """Return the exact motion from the start of a simulated one; None if there is none to show."""
+    """Return the exact motion from the start of a simulated one, or None if there is none to show.
+
+    The start is at t = 0, and theory has nothing to show before it.
+    """
     if trajectory.rolling == "exact" or trajectory.time[0] < 0:
         return None
     times = np.linspace(trajectory.time[0], trajectory.time[-1], 1500)
@@ -190,9 +100,10 @@ def _rolls(theory: Trajectory) -> np.ndarray:
 
 
 class ChartStrip:
-    """Charts side by side.
+    """Charts side by side, below the pictures of a film.
 
-    Lines with a colour are drawn up to now. Theory's lines are there from the beginning.
+    Lines that have a colour are drawn up to the time of the picture, with a dot at their end.
+    Theory's lines are there from the beginning.
     """
 
     def __init__(
@@ -202,7 +113,11 @@ class ChartStrip:
         height: int,
         marked: Sequence[tuple[float, float]] = (),
     ) -> None:
-        """Prepare to draw charts in which some spans of time [s] are `marked`."""
+        """Prepare to draw charts of so many pixels, in which some spans of time [s] are `marked`.
+
+        All is drawn twice, at the beginning and at the end of the film. A picture takes what is to
+        the left of its time from the second.
+        """
         self._charts = charts
         self._height = height
         self._unit = height / 10
@@ -215,33 +130,40 @@ class ChartStrip:
             "axes.linewidth": 0.06 * self._unit,
         }
         with rc_context(STYLE | style):
-            figure = Figure(figsize=(width / 72, height / 72), dpi=72)
+            figure = Figure(figsize=(width / 72, height / 72), dpi=72)  # an inch is 72 pixels
             canvas = FigureCanvasAgg(figure)
-            panels = figure.subplots(1, len(charts), squeeze=False)[0]
-            figure.subplots_adjust(
-                left=4.5 * letters / width,
-                right=1 - 2 * letters / width,
-                top=1 - 1.8 * letters / height,
-                bottom=3 * letters / height,
-                wspace=6 * letters / (width / len(charts) - 6 * letters),
-            )
-            moving = []
+            panels = self._make_panels(figure, letters)
+            growing = []
             for panel, chart in zip(panels, charts, strict=True):
                 for first, last in marked:
                     panel.axvspan(first, last, color=_MARKED, linewidth=0)
-                moving += self._draw_panel(panel, chart)
-            self._add_key(figure, panels[0], width)
+                growing += self._draw_panel(panel, chart)
+            self._add_key(figure, panels[0])
             canvas.draw()
             self._beginning = np.array(canvas.buffer_rgba())
-            for line in moving:
+            for line in growing:
                 figure.draw_artist(line)
             self._complete = np.array(canvas.buffer_rgba())
         self._panels: list[tuple[Transform, BboxBase]] = [
             (panel.transData, panel.get_window_extent()) for panel in panels
         ]
 
+    def _make_panels(self, figure: Figure, letters: float) -> list[Axes]:
+        """Return a panel for each chart, with room for `letters` of this height [pixels]."""
+        width, height = figure.bbox.size
+        count = len(self._charts)
+        panels = figure.subplots(1, count, squeeze=False)[0]
+        figure.subplots_adjust(
+            left=4.5 * letters / width,
+            right=1 - 2 * letters / width,
+            top=1 - 1.8 * letters / height,
+            bottom=3 * letters / height,
+            wspace=6 * letters / (width / count - 6 * letters),
+        )
+        return list(panels)
+
     def _draw_panel(self, panel: Axes, chart: Chart) -> list[Line2D]:
-        """Draw a chart without the lines that are seen up to now only, and return those."""
+        """Draw a chart without the lines that grow with the film, and return these."""
         unit = self._unit
         for line in sorted(chart.lines, key=lambda line: line.colour is not None):
             panel.plot(
@@ -263,8 +185,8 @@ class ChartStrip:
         panel.tick_params(pad=0.25 * unit, length=0.3 * unit)
         return [line for line in panel.lines if line.get_animated()]
 
-    def _add_key(self, figure: Figure, panel: Axes, width: int) -> None:
-        """Name the lines below the charts, unless all have one name."""
+    def _add_key(self, figure: Figure, panel: Axes) -> None:
+        """Name the lines of a panel below the charts, unless they have one name."""
         handles, names = panel.get_legend_handles_labels()
         named = dict(zip(names, handles, strict=True))
         if len(named) > 1:
@@ -272,7 +194,7 @@ class ChartStrip:
                 named.values(),
                 named,
                 loc="lower right",
-                bbox_to_anchor=(1 - self._unit / width, 0.0),
+                bbox_to_anchor=(1 - self._unit / figure.bbox.width, 0.0),
                 ncols=4,
                 borderaxespad=0.1,
                 borderpad=0,
@@ -281,7 +203,7 @@ class ChartStrip:
             )
 
     def draw(self, sheet: Sheet, time: float, top: int) -> None:
-        """Draw the strip as it is at a `time` [s], with its upper edge at a row of the sheet."""
+        """Draw the strip as it is at a `time` [s], with its upper edge at the row `top`."""
         shown = self._beginning.copy()
         for transform, extent in self._panels:
             left = int(extent.x0)

@@ -11,28 +11,32 @@ from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
 
 Mark = Literal["ghost", "paths", "normal", "friction", "phi", "measured"]
-"""ghost: a can that accelerates evenly. paths: those of a point on the rim and of the load's
-centre of mass. normal: N. friction: F. phi: the angle of the load. measured: where a filmed axis
-has been so far."""
+"""What can be drawn to explain a motion.
+
+ghost: a can that accelerates evenly. paths: those of a point on the rim and of the load's centre of
+mass. normal: the normal force N. friction: the friction F. phi: the angle of the load. measured:
+where a filmed axis has been so far.
+"""
 
 
 class SceneNames(NamedTuple):
     """What a scene and its parts are called in a film."""
 
     title: str
-    """The title of a film of which nothing else is known."""
+    """The title of a film for which no other is given."""
     body: str
     """What rolls."""
     load: str
     """What is in it."""
 
 
-_NAMES = {  # by the names of looks
+_NAMES = {
     "sliding": SceneNames("Beer that slides in its can without friction", "can", "beer"),
     "frozen": SceneNames("Beer frozen to its can", "can", "beer"),
     "pendulum": SceneNames("A pendulum in a rolling wheel", "wheel", "bob"),
     "hoop": SceneNames("A weight on the rim of a hoop", "hoop", "bar"),
 }
+"""What scenes and their parts are called, by how the scenes look."""
 
 
 def scene_names(scene: Scene) -> SceneNames:
@@ -59,14 +63,18 @@ class FilmStyle:
 
     @classmethod
     def usual(cls, trajectory: Trajectory, camera: Camera = "auto") -> Self:
-        """Return the style of a motion of which nothing else is known."""
+        """Return the style of a motion for which no other is given."""
         scene = trajectory.scene
         title = scene_names(scene).title
         if scene.dissipates:
             title = "A can that its load or the air brakes"
         if trajectory.rolling == "contact":
-            marks: tuple[Mark, ...] = ("phi", "paths", "normal", "friction")
-            return cls(title, strips=("phi", "normal"), marks=marks, camera=camera)
+            return cls(
+                title,
+                strips=("phi", "normal"),
+                marks=("phi", "paths", "normal", "friction"),
+                camera=camera,
+            )
         if scene.dissipates:
             return cls(title, strips=("phi", "u_dot"), camera=camera)
         if scene.attachment == "sliding":

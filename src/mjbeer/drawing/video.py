@@ -22,16 +22,16 @@ from mjbeer.output import files, terminal
 from mjbeer.output.plots import Picture
 from mjbeer.theory.trajectory import Trajectory
 
-_LARGEST = 4096  # largest width and height [pixels] that H.264 encoders support
+_LARGEST = 4096
+"""Largest width and height [pixels] that H.264 encoders support."""
 _RATE_FACTOR = 23
 """The rate factor of a file, ffmpeg's default: at 18 no loss is visible, and at 24 letters are
 still sharp."""
 _FFMPEG_OPTIONS = [
-    # HD colours (BT.709), which players expect; the default are those of SD television.
+    # HD colours (BT.709), which players expect; ffmpeg's default is those of SD television.
     "-vf",
     "scale=out_color_matrix=bt709:out_range=tv",
-    # A search for motion that is quick and not deep: files are a sixth larger, and take a quarter
-    # less time.
+    # A quick search for motion: files are a sixth larger, and take a quarter less time.
     "-preset",
     "veryfast",
     "-x264-params",
@@ -41,7 +41,7 @@ _FFMPEG_OPTIONS = [
     "+faststart",
 ]
 _DISK_ERRORS = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
-"""What can be wrong with a disk; ffmpeg prints the system's messages for these."""
+"""Numbers of the errors that a disk causes; ffmpeg prints the system's messages for these."""
 
 
 def render(
@@ -54,28 +54,25 @@ def render(
     camera: Camera = "auto",
     progress: bool = True,
 ) -> None:
-    """Write a trajectory as a video, MP4 with H.264.
+    """Write a trajectory as a video, MP4 with H.264, or show it in a notebook if `path` is None.
 
-    If that fails, no file is left, and an existing one is kept.
+    If writing fails, no file is left, and an existing one is kept.
 
-    Where `path` is None it is shown in a notebook. `width` and `height` are in pixels, `fps` in
+    `width` and `height` are in pixels, `fps` in
     frames per second of the video; `speed` is 1 for real time, 0.25 for four times slower. `camera`
     is "fixed" (it stands still and shows the whole motion), "pan" (it moves with a constant
     acceleration), or "auto" (fixed, unless the can would be too small). If `progress` is true and
     standard error is a terminal, it shows a progress bar.
 
-    Where the equations of a run were not solved, each picture says so. A run of a fixed timestep is
-    judged by a second one, which takes twice its time.
+    Each picture of a run whose equations were not solved says so. To find out, a run with a fixed
+    timestep is repeated with another, which takes twice its time.
 
     Raises:
       ParameterError: if a parameter is not allowed.
       RenderingError: if OpenGL or ffmpeg does not work; the message says what to do.
       OutputError: if the file cannot be written.
     """
-    target = None if path is None else require.path(path)
-    if target and target.suffix.lower() != ".mp4":
-        name = require.format_value(str(path))
-        raise ParameterError(f"the file's name must end in .mp4, got {name}")
+    target = None if path is None else file_path(path)
     require.choice("progress", progress, (True, False))
     console = terminal.STDERR if progress else None
     require.instance("trajectory", trajectory, Trajectory)
@@ -89,8 +86,25 @@ def render(
         ):
             mediapy.show_video(pictures, fps=fps, autoplay=False)
         return
-    with terminal.progress_bar(console, len(plan.times(fps))) as begin:
-        write(plan, target, width, height, fps, begin)
+    with terminal.progress_bar(console, len(plan.times(fps))) as show_progress:
+        write(plan, target, width, height, fps, show_progress)
+
+
+def file_path(path: str | os.PathLike[str]) -> pathlib.Path:
+    """Return the path of a video.
+
+    Raises:
+      ParameterError: if it is no path, or does not end in .mp4.
+    """
+    target = require.path(path)
+    if target.suffix.lower() != ".mp4":
+        name = require.format_value(str(path))
+        raise ParameterError(f"the file's name must end in .mp4, got {name}")
+    return target
+
+
+def _show_nothing(_: str) -> None:
+    """Stand for a progress bar that is not there."""
 
 
 def write(
@@ -99,9 +113,9 @@ def write(
     width: int,
     height: int,
     fps: float,
-    begin: Callable[[str], Any] = str,
+    show_progress: Callable[[str], None] = _show_nothing,
 ) -> None:
-    """Write a film as `render` does; `begin` gets the words of a progress bar."""
+    """Write a film as `render` does; `show_progress` is told of each picture as it is drawn."""
     with (
         files.atomic_write(path) as temporary,
         contextlib.closing(_pictures(plan, width, height, fps)) as pictures,
@@ -118,7 +132,7 @@ def write(
         try:
             try:
                 for picture in pictures:
-                    begin(f"drawing {path.name}")
+                    show_progress(f"drawing {path.name}")
                     writer.add_image(picture)
             except BrokenPipeError:
                 writer.close()  # which now raises what ffmpeg said
@@ -132,7 +146,7 @@ def write(
 def _kill_ffmpeg(writer: Any) -> None:
     """End the ffmpeg of a `mediapy.VideoWriter`.
 
-    To close the writer is to wait for its ffmpeg, which may hang.
+    Closing the writer would wait for ffmpeg, which may hang.
     """
     process = writer._proc
     if process is None:
@@ -161,20 +175,24 @@ def _check_size(name: str, pixels: int) -> None:
 
 @contextlib.contextmanager
 def _mediapy() -> Generator[Any]:
-    """Yield mediapy with the ffmpeg of imageio-ffmpeg, and raise what fails as ffmpeg's fault."""
+    """Yield mediapy with the ffmpeg of imageio-ffmpeg, and say what is wrong if ffmpeg fails.
+
+    Raises:
+      OSError: if the disk is full or broken.
+      RenderingError: if ffmpeg fails for another reason.
+    """
     import imageio_ffmpeg
-    import mediapy  # which loads matplotlib and IPython: half a second that only films take
+    import mediapy  # it loads IPython: half a second, which only films should cost
 
     try:
         mediapy.set_ffmpeg(imageio_ffmpeg.get_ffmpeg_exe())
         yield mediapy
     except (OSError, RuntimeError) as error:
         cause = error.__context__
-        if not isinstance(
-            cause, OSError | RuntimeError | None
-        ):  # drawing failed, or Ctrl-C ended both
+        if cause is not None and not isinstance(cause, OSError | RuntimeError):
+            # It was not ffmpeg that failed first: the drawing did, or Ctrl-C ended both.
             raise cause from None
-        # Without mediapy's words, which come before those of ffmpeg.
+        # Mediapy puts words of its own before those of ffmpeg.
         messages = re.sub("^Error writing '.*?': ", "", str(error)).strip()
         for number in _DISK_ERRORS:
             if os.strerror(number) in messages:
@@ -205,7 +223,7 @@ class FilmJob:
         """Write the film, and return its still picture as WebP."""
         plan = self.film.plan()
         write(plan, self.path, self.width, self.height, self.fps)
-        # At the start nothing has happened yet.
+        # Not the first picture by default: at the start nothing has happened yet.
         still = self.film.still or (2 * plan.start + plan.end) / 3
         (picture,) = plan.draw(np.array([still]), self.width, self.height)
         file = io.BytesIO()

@@ -14,6 +14,7 @@ from mjbeer.drawing.overlay import HEIGHT, STRIP, draw_title
 from mjbeer.drawing.scene import Display
 from mjbeer.drawing.sheet import INK, Sheet
 from mjbeer.drawing.strip import Chart, ChartStrip, Line
+from mjbeer.model.attach import surface_slope
 from mjbeer.model.build import build
 from mjbeer.model.looks import WALL
 from mjbeer.theory.scene import sliding
@@ -23,22 +24,22 @@ _TIMESTEP = 5e-4
 """[s]."""
 _DISTANCE = 0.4
 """How far the grippers move [m]."""
-_LONGEST = 2.4
+_DURATION = 2.4
 """How long the film watches them [s]."""
-_APART = 0.34
+_LANE = 0.34
 """Distance of the grippers from each other [m]."""
-_HIGH = 0.015
-"""Height at which they hold their cans [m]."""
-_LEFT = -0.26
-"""Where the picture begins [m]."""
+_HEIGHT = 0.015
+"""How high above the board the bottoms of the cans are held [m]."""
+_BEGIN = -0.26
+"""How far to the right the place is that the left edge of the picture shows [m]."""
 _EYE = np.array([0.1, -2.2, 1.5])
 """Where the eye is [m]."""
-_PLATES = 24
+_FACES = 24
 """Number of flat faces around half a can."""
 _STEEL = np.array([0.32, 0.36, 0.42])
 _CORNERS = ((-0.06, 0.0), (0.06, 0.0), (0.06, 0.19), (-0.06, 0.19))
 _OUTLINE = np.array([[(x, y, z) for x, z in _CORNERS] for y in (-0.034, 0.034)])
-"""What is around a gripper, its near and its far side, from the bottom of its can [m]."""
+"""A box around a gripper and its can: its near and its far side, from the bottom of the can [m]."""
 
 
 class Carried(NamedTuple):
@@ -53,7 +54,7 @@ class Carried(NamedTuple):
     force: np.ndarray
     """Level force of the gripper on the can [N]."""
     rise: np.ndarray
-    """How high the surface rises at the wall ahead, by all modes that move, in radii."""
+    """How high the surface rises at the wall ahead, by all modes that move, divided by R."""
 
 
 def carry(
@@ -62,26 +63,25 @@ def carry(
     """Return the motion of a can that is moved by a `distance` [m] in a `duration` [s].
 
     It is then held for `after` [s]. The move has the least jerk that starts and ends at rest. In
-    the frame of the gripper the can stands still and gravity is tilted by the acceleration, so that
-    the gripper is as rigid as can be.
+    the frame of the gripper the can stands still, and gravity is tilted by the acceleration: so the
+    gripper is rigid.
     """
     model = build(can, free=False, timestep=_TIMESTEP)
     data = mujoco.MjData(model)
     body = model.body("can").id
     time = _TIMESTEP * np.arange(round((duration + after) / _TIMESTEP) + 1)
     place, acceleration = minimum_jerk(time, distance, duration)
-    # A step has the gravity of its middle.
-    _, in_step = minimum_jerk(time + _TIMESTEP / 2, distance, duration)
+    # A step takes the gravity of its middle.
+    _, half_step_later = minimum_jerk(time + _TIMESTEP / 2, distance, duration)
     force = np.empty_like(time)
-    rise = np.zeros_like(time)
-    for step, now in enumerate(acceleration):
-        model.opt.gravity[0] = -now
+    rise = np.empty_like(time)
+    for step in range(len(time)):
+        model.opt.gravity[0] = -acceleration[step]
         mujoco.mj_forward(model, data)
         mujoco.mj_rnePostConstraint(model, data)
-        force[step] = data.cfrc_int[body, 3]  # level, on its parent: the moment comes first
-        for mode, elevation in enumerate(can.elevations(), start=1):
-            rise[step] -= elevation * data.sensor(f"slosh{mode}_up").data[0]
-        model.opt.gravity[0] = -in_step[step]
+        force[step] = data.cfrc_int[body, 3]  # along x; the three moments come first
+        rise[step] = surface_slope(model, data, "")[0]
+        model.opt.gravity[0] = -half_step_later[step]
         mujoco.mj_step(model, data)
     return Carried(time, place, acceleration, force, rise)
 
@@ -125,27 +125,28 @@ class Carry(Film):
     )
 
     def plan(self) -> RenderPlan:
+        can = standing()
         runs = [
-            carry(standing(), duration=move.duration, after=_LONGEST - move.duration)
-            for move in MOVES
+            carry(can, duration=move.duration, after=_DURATION - move.duration) for move in MOVES
         ]
-        return RenderPlan(0.0, _LONGEST, self.speed, partial(self._draw, runs))
+        return RenderPlan(0.0, _DURATION, self.speed, partial(self._draw, can, runs))
 
     def _draw(
-        self, runs: list[Carried], times: np.ndarray, width: int, height: int
+        self, can: Standing, runs: list[Carried], times: np.ndarray, width: int, height: int
     ) -> Generator[np.ndarray]:
         sheet = Sheet(width, height)
         top = round(HEIGHT * sheet.unit)
         below = round(STRIP * sheet.unit)
-        display = Display([sliding(0.0)] * len(MOVES), _APART, lines=(0.0, _DISTANCE))
+        display = Display([sliding(0.0)] * len(MOVES), _LANE, lines=(0.0, _DISTANCE))
         view = _view((width, height - top - below), top)
-        strip = ChartStrip([_force_chart(runs)], width, below)
-        display.draw_empty(sheet, view)
+        pen = _Pen(sheet, view, display)
+        strip = ChartStrip([_force_chart(can, runs)], width, below)
+        display.scenery.draw(sheet, view)
         empty = sheet.part(top, height - below)
         for time in times:
             sheet.put(empty, top)
-            for lane in reversed(range(len(MOVES))):  # the nearest at last
-                _draw_move(sheet, view, display, lane, runs[lane], time)
+            for lane in reversed(range(len(MOVES))):  # the nearest comes last
+                _draw_move(pen, can, lane, runs[lane], time)
             words = "half a 12-oz can of beer, carried 0.4 m"
             draw_title(sheet, self.title, words, time, self.speed)
             strip.draw(sheet, time, height - below)
@@ -155,14 +156,13 @@ class Carry(Film):
 def _view(pixels: tuple[int, int], top: int) -> View:
     """Return the view of both moves from their starts to their ends."""
     corners = [
-        _OUTLINE + np.array([x, y, _HIGH]) for x in (_LEFT, _DISTANCE) for y in (0.0, _APART)
+        _OUTLINE + np.array([x, y, _HEIGHT]) for x in (_BEGIN, _DISTANCE) for y in (0.0, _LANE)
     ]
     return View.towards(_EYE, np.reshape(corners, (-1, 3)), pixels, top, 0.02)
 
 
-def _force_chart(runs: list[Carried]) -> Chart:
+def _force_chart(can: Standing, runs: list[Carried]) -> Chart:
     """Return the chart of the forces of the grippers, and of what they would be with solid beer."""
-    can = standing()
     mass = can.mass + can.can.mass
     lines = [
         Line(f"moved in {move.duration:g} s", run.time, run.force, move.colour)
@@ -172,27 +172,46 @@ def _force_chart(runs: list[Carried]) -> Chart:
     return Chart("force [N]", lines)
 
 
-def _draw_move(
-    sheet: Sheet, view: View, display: Display, lane: int, run: Carried, time: float
-) -> None:
+class _Pen(NamedTuple):
+    """Draws lit faces of things in space onto a sheet."""
+
+    sheet: Sheet
+    view: View
+    display: Display
+
+    def face(self, corners: np.ndarray, colour: np.ndarray, normal: np.ndarray) -> None:
+        """Fill the face between some corners [m], shape (n, 3)."""
+        lit = self.display.scenery.lit(colour, normal, self.view)
+        self.sheet.area(self.view.pixel(corners), lit)
+
+    def box(self, centre: np.ndarray, half: np.ndarray, colour: np.ndarray) -> None:
+        """Draw a box with a centre and half its sizes [m]."""
+        for axis in (0, 2, 1):  # the front comes last
+            # Of two opposite sides, the one that faces the eye is seen.
+            normal = np.sign(self.view.eye - centre)[axis] * np.eye(3)[axis]
+            across, upward = np.delete(np.eye(3), axis, axis=0)
+            corners = np.array(
+                [-across - upward, across - upward, across + upward, upward - across]
+            )
+            self.face(centre + half * (normal + corners), colour, normal)
+
+
+def _draw_move(pen: _Pen, can: Standing, lane: int, run: Carried, time: float) -> None:
     """Draw a gripper and its can at a `time` [s], and a plate that says how the beer rises."""
     move = MOVES[lane]
-    can = standing()
-    place = np.array([np.interp(time, run.time, run.place), lane * _APART, _HIGH])
-    display.shade(sheet, view, place + _OUTLINE)
-    rise = float(np.interp(time, run.time, run.rise))
-    _draw_can(sheet, view, display, can, place, rise)
-    _draw_gripper(sheet, view, display, can, place, np.array(move.colour))
+    place = np.array([np.interp(time, run.time, run.place), lane * _LANE, _HEIGHT])
+    pen.display.scenery.shade(pen.sheet, pen.view, place + _OUTLINE)
+    _draw_can(pen, can, place, float(np.interp(time, run.time, run.rise)))
+    _draw_gripper(pen, can, place, np.array(move.colour))
+
     highest = np.abs(run.rise[run.time <= time]).max()
     trust = "only a picture" if highest > QUANTITATIVE else "within 0.1 R"
     lines = [f"in {move.duration:g} s", f"rises by {highest:.2f} R: {trust}"]
     beside = place + np.array([-0.065, 0, can.height])
-    sheet.plate(view.pixel(beside), lines, move.colour, (1, 0.5))
+    pen.sheet.plate(pen.view.pixel(beside), lines, move.colour, (1, 0.5))
 
 
-def _draw_can(
-    sheet: Sheet, view: View, display: Display, can: Standing, place: np.ndarray, rise: float
-) -> None:
+def _draw_can(pen: _Pen, can: Standing, place: np.ndarray, rise: float) -> None:
     """Draw a can with the bottom at a `place` [m], cut open in front.
 
     The liquid is higher by `rise` radii at the wall ahead.
@@ -201,58 +220,37 @@ def _draw_can(
     wall = (1 + WALL) * can.can.radius
     room = min(can.height, length - can.height)
     assert abs(rise) * wall < room, "the surface reaches the lid or the bottom"
-    metal = display.model.mat("metal").rgba[:3]
-    beer = display.model.mat("beer").rgba[:3]
-    # Directions from the axis: first those behind it, then those before it.
-    around = np.insert(circle(1.0, 2 * _PLATES), 2, 0.0, axis=1)
-    bottom = wall * around
+    metal = pen.display.model.mat("metal").rgba[:3]
+    beer = pen.display.model.mat("beer").rgba[:3]
+    # Unit vectors from the axis: first those to the half behind it, then those to the front half.
+    around = np.insert(circle(1.0, 2 * _FACES), 2, 0.0, axis=1)
+    bottom = place + wall * around
     lid = bottom + np.array([0, 0, length])
-    surface = bottom + np.outer(can.height + rise * bottom[:, 0], [0, 0, 1])
-
-    def face(corners: np.ndarray, colour: np.ndarray, normal: np.ndarray) -> None:
-        sheet.area(view.pixel(place + corners), display.lit(colour, normal, view))
-
-    for first in range(2 * _PLATES):
-        edges = slice(first, first + 3, 2)  # a face overlaps with the next: no gap is seen
-        if first < _PLATES:  # the wall behind, from inside
-            face(np.concatenate([bottom[edges], lid[edges][::-1]]), metal, -around[first])
-        else:  # the liquid before it
-            face(np.concatenate([bottom[edges], surface[edges][::-1]]), beer, around[first])
-    face(surface, beer, np.array([-rise, 0, 1]))
+    surface = bottom + np.outer(can.height + rise * wall * around[:, 0], [0, 0, 1])
+    for first in range(2 * _FACES):
+        edges = slice(first, first + 3, 2)  # a face overlaps the next, so that no gap is seen
+        if first < _FACES:  # the inside of the wall at the back
+            inside = np.concatenate([bottom[edges], lid[edges][::-1]])
+            pen.face(inside, metal, -around[first])
+        else:  # the liquid, where the wall is cut away
+            front = np.concatenate([bottom[edges], surface[edges][::-1]])
+            pen.face(front, beer, around[first])
+    pen.face(surface, beer, np.array([-rise, 0, 1]))
     for limit in (-QUANTITATIVE, QUANTITATIVE):
         height = can.height + limit * can.can.radius
-        line = place + bottom[_PLATES:] + np.array([0, 0, height])
-        sheet.line(view.pixel(line), 0.12 * sheet.unit, INK)
+        line = bottom[_FACES:] + np.array([0, 0, height])
+        pen.sheet.line(pen.view.pixel(line), 0.12 * pen.sheet.unit, INK)
 
 
-def _draw_gripper(
-    sheet: Sheet,
-    view: View,
-    display: Display,
-    can: Standing,
-    place: np.ndarray,
-    colour: np.ndarray,
-) -> None:
+def _draw_gripper(pen: _Pen, can: Standing, place: np.ndarray, colour: np.ndarray) -> None:
     """Draw a gripper, with pads of a colour, that holds a can with the bottom at a `place` [m]."""
     length = can.can.length
     wall = (1 + WALL) * can.can.radius
-
-    def draw_box(x: float, z: float, half: np.ndarray, paint: np.ndarray) -> None:
-        """Draw a box from its centre and half its sizes [m]."""
-        centre = place + np.array([x, 0.0, z])
-        for axis in (0, 2, 1):  # the front at last
-            # Of two sides, the one that is turned to the eye is seen.
-            normal = np.sign(view.eye - centre)[axis] * np.eye(3)[axis]
-            one, other = np.delete(np.eye(3), axis, axis=0)
-            corners = np.array([-one - other, one - other, one + other, other - one])
-            points = centre + half * (normal + corners)
-            sheet.area(view.pixel(points), display.lit(paint, normal, view))
-
     pad = np.array([0.004, 0.012, 0.03])
     arm = np.array([0.005, 0.01, length / 2])
     bridge = np.array([wall + 0.024, 0.014, 0.008])
     for side in (-1, 1):
-        draw_box(side * (wall + 0.005), length / 2, pad, colour)
+        pen.box(place + np.array([side * (wall + 0.005), 0, length / 2]), pad, colour)
     for side in (-1, 1):
-        draw_box(side * (wall + 0.014), length / 2 + 0.03, arm, _STEEL)
-    draw_box(0.0, length + 0.03, bridge, _STEEL)
+        pen.box(place + np.array([side * (wall + 0.014), 0, length / 2 + 0.03]), arm, _STEEL)
+    pen.box(place + np.array([0, 0, length + 0.03]), bridge, _STEEL)

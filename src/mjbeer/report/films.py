@@ -31,19 +31,23 @@ _FILL = 0.75
 _ICE = 917.0
 """Density of ice [kg/m^3]."""
 WITH_LIQUID: Any = {"incline": _STEEPER, "fill": _FILL, "can": METAL}
-_HESITATES: Any = {"strips": ("u_dot", "ahead"), "marks": ("phi", "ghost"), "notes": ("hesitates",)}
+"""What `liquid` takes, besides its name, for a can of the race of liquids."""
+_hesitating = partial(
+    FilmStyle, strips=("u_dot", "ahead"), marks=("phi", "ghost"), notes=("hesitates",)
+)
+"""The style of a film, by its title, of a can that hesitates in every swing of its load."""
 HOP = partial(
     simulate,
     hoop(hoop_mass=0.06),
-    0.26,
-    math.radians(-90),
-    math.radians(1700),
+    duration=0.26,
+    phi0=math.radians(-90),
+    phi_dot0=math.radians(1700),
     rolling="contact",
     timestep=1e-4,
     friction=0.01,
 )
-"""A hop whose height does not hang on the timestep, as it does where a hoop skims, or grips and
-slips in turn."""
+"""A hop whose height does not depend on the timestep. It would if the hoop skimmed the ground, or
+gripped and slipped in turn."""
 _SMALL = (640, 360, 25)
 """Width and height [pixels] and pictures per second in a quick report."""
 
@@ -53,7 +57,7 @@ def of_beer() -> Sequence[Runner]:
     slides = sliding(_GENTLE, can=METAL, fill=_FILL)
     is_frozen = frozen(_GENTLE, can=METAL, fill=_FILL)
     is_full = frozen(_GENTLE, can=METAL, fill=1.0)
-    # What is in the empty can weighs a thousandth of the can.
+    # There is no can without a load: that of the empty one weighs a thousandth of the can.
     is_empty = sliding(_GENTLE, can=METAL, fill=0.01, density=12.5)
     return [
         Runner(
@@ -158,7 +162,7 @@ FILMS: dict[str, Film] = {
         "swings. The can goes to and fro about the dashed one, which accelerates evenly: it "
         "hesitates with every swing.",
         still=0.4,
-        style=FilmStyle("Beer slides in its can, and the can hesitates", **_HESITATES),
+        style=_hesitating("Beer slides in its can, and the can hesitates"),
     ),
     "frozen": MotionFilm(
         partial(simulate, frozen(), 0.82, math.pi, tolerance=1e-9),
@@ -168,8 +172,8 @@ FILMS: dict[str, Film] = {
         still=0.55,
         style=FilmStyle(
             "Frozen beer rolls down in jerks",
-            ("normal", "u"),
-            ("paths", "normal", "friction"),
+            strips=("normal", "u"),
+            marks=("paths", "normal", "friction"),
             notes=("heavy", "light"),
         ),
     ),
@@ -180,7 +184,7 @@ FILMS: dict[str, Film] = {
         "hesitates whenever its bob is uphill, and runs ahead whenever it is downhill, for nothing "
         "but their weight drives them together.",
         still=0.4,
-        style=FilmStyle("A pendulum in a wheel: does the wheel roll evenly?", **_HESITATES),
+        style=_hesitating("A pendulum in a wheel: does the wheel roll evenly?"),
     ),
     "hoop": MotionFilm(
         HOP,
@@ -193,8 +197,8 @@ FILMS: dict[str, Film] = {
         still=0.2,
         style=FilmStyle(
             "Why does a hoop fly? The bar on its rim lifts it",
-            ("lift", "normal"),
-            ("paths", "normal"),
+            strips=("lift", "normal"),
+            marks=("paths", "normal"),
             notes=("flies", "heavy", "light"),
         ),
     ),

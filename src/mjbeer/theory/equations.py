@@ -199,6 +199,31 @@ def slip_rate_of(
     return u_dot / scene.can.radius - phi_dot
 
 
+def resting_tilt(
+    scene: Scene,
+    phi_dot: np.ndarray,
+    u_dot: np.ndarray,
+) -> np.ndarray:
+    """Return the phi [rad] at which a sliding load would hang still at the present rates.
+
+    Without damping and drag it is the equilibrium, and at the terminal speed the `terminal_tilt`.
+    With T, D and the braking of `accelerations`, and `depth` and `bottom` of `Oscillator`, it
+    solves
+
+        depth sin(phi - bottom) + (m b/M_e) cos(phi) (T/a + D) = T.
+
+    If the load cannot exert T, it is where its torque is the largest.
+    """
+    torque = scene.damping_law.torque(slip_rate_of(scene, phi_dot, u_dot))
+    braking = torque / scene.can.radius + scene.drag * u_dot * np.abs(u_dot)
+    swing = scene.oscillator
+    of_sine = swing.depth * math.cos(swing.bottom)
+    of_cosine = scene.load.moment / scene.effective_mass * braking
+    of_cosine -= swing.depth * math.sin(swing.bottom)
+    sine = torque / np.hypot(of_sine, of_cosine)
+    return np.arcsin(np.clip(sine, -1, 1)) - np.arctan2(of_cosine, of_sine)
+
+
 def rolling_forces(
     scene: Scene, phi: np.ndarray | float, phi_dot: np.ndarray | float, u_dot: np.ndarray | float
 ) -> Forces:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mjbeer.theory import equations, formulas
+from mjbeer.theory import equations, formulas, slosh
 from mjbeer.theory.equations import Coordinates, InitialState, select_samples
 from mjbeer.theory.liquid import centrifugal_ratio, lump_warning
 from mjbeer.theory.scene import Scene
@@ -67,6 +67,10 @@ class Record:
     """Largest |u_dot/a - phi_dot| of can and load with damping or drag [rad/s]."""
     no_lump_at: float = math.inf
     """When the wall of a can with a liquid is first too fast for a lump [s]."""
+    largest_tilt: float = 0.0
+    """Largest angle of the surface of a liquid that sloshes against its rest [rad].
+
+    The rest is that of the present rates, `equations.resting_tilt`."""
     lowest_normal: float = math.inf
     """Smallest N that rolling needed [N]; below 0 the incline would have to pull."""
     needed_friction: float = 0.0
@@ -158,12 +162,21 @@ class RecordMaker:
         record.swing_energy = _largest(record.swing_energy, swing)
         record.energy_change = _largest(record.energy_change, energy - self._initial_energy)
 
+        if scene.load.sloshes_in is not None:
+            self._add_tilt(motion, first)
         if scene.dissipates:
             self._add_slip_rate(motion)
             return
         self._add_swing_drift(motion, first, swing)
         if scene.attachment == "sliding":
             self._add_axis_drift(motion, first)
+
+    def _add_tilt(self, motion: Coordinates, first: Coordinates) -> None:
+        """Add how far the surface of a liquid tilts against its rest."""
+        record = self.record
+        rest = equations.resting_tilt(record.scene, motion.phi_dot, motion.u_dot)
+        turns = math.tau * round(float(first.phi[0]) / math.tau)
+        record.largest_tilt = _largest(record.largest_tilt, motion.phi - turns - rest)
 
     def _add_slip_rate(self, motion: Coordinates) -> None:
         """Add how fast can and load slip past each other with damping or drag."""
@@ -268,7 +281,7 @@ class Diagnosis(NamedTuple):
     rolling: tuple[str, ...]
     """Where a can did not, or could not, roll without slipping."""
     liquid: tuple[str, ...]
-    """Where a liquid is no lump, or slips faster or slower than its damping law allows."""
+    """Where a liquid is no lump, slips at other rates than its damping is for, or tilts too far."""
 
 
 def diagnose(record: Record, rolling: str, friction: float = math.inf) -> Diagnosis:
@@ -279,7 +292,7 @@ def diagnose(record: Record, rolling: str, friction: float = math.inf) -> Diagno
     return Diagnosis(
         solver=failed_checks(record, rolling),
         rolling=rolling_failures(record, rolling, friction),
-        liquid=_no_lump(record),
+        liquid=_no_lump(record) + _too_steep(record),
     )
 
 
@@ -342,6 +355,20 @@ def _no_lump(record: Record) -> tuple[str, ...]:
     turns = record.largest_distance / (math.tau * record.scene.can.radius)
     warning = lump_warning("the liquid", record.scene, record.largest_slip_rate, spread, turns)
     return (warning,) if warning else ()
+
+
+def _too_steep(record: Record) -> tuple[str, ...]:
+    """Return, in one sentence, how far a surface tilts beyond linear theory; empty if it does not.
+
+    That is of a load that stands for slosh.
+    """
+    tilt = record.largest_tilt
+    if tilt <= slosh.LARGEST_TILT:
+        return ()
+    if tilt > math.pi:
+        return ("the load stands for a liquid that sloshes, and turns round, as no liquid does",)
+    tilts = f"the surface tilts by up to {tilt:.2g} rad against its rest"
+    return (f"{tilts}: linear theory of slosh holds up to {slosh.LARGEST_TILT:g} rad",)
 
 
 def _largest(so_far: float, values: np.ndarray | float) -> float:

@@ -137,7 +137,11 @@ class Trajectory(Coordinates):
 
     @property
     def liquid_warnings(self) -> tuple[str, ...]:
-        """Return where a liquid is no lump, or slips faster or slower than its damping allows."""
+        """Return where the model of a liquid does not hold, a sentence each.
+
+        It is no lump, slips faster or slower than its damping allows, or its surface tilts by more
+        than 0.2 rad against its rest.
+        """
         return self.diagnosis.liquid
 
     @property
@@ -190,9 +194,9 @@ class Trajectory(Coordinates):
         Raises:
           ParameterError: if there is no quantity of a name; the message lists the names.
         """
-        from mjbeer.drawing import words
+        from mjbeer.drawing import plot
 
-        return words.plot(self, *names, theory=theory)
+        return plot.plot(self, *names, theory=theory)
 
     def video(
         self,
