@@ -331,8 +331,15 @@ def rolling(fill: float, mass_ratio: float) -> RollingModes:
     if ratio < 1:
         got = require.format_value(mass_ratio)
         raise ParameterError(f"mass_ratio must be 1 or greater (infinity is allowed), got {got}")
+    held(fill)  # refuses a fill that is not allowed
+    return _rolling(float(fill), ratio)
+
+
+# A fit of an incline asks for the same modes hundreds of times.
+@functools.lru_cache(maxsize=1024)
+def _rolling(fill: float, mass_ratio: float) -> RollingModes:
     modes = held(fill)
-    arm = modes.offset / ratio
+    arm = modes.offset / mass_ratio
     # In the basis of the eigenvectors of the can that is held.
     flat = np.sqrt(modes.energy_shares)
     lengths, vectors = np.linalg.eigh(np.diag(modes.lengths) - arm * np.outer(flat, flat))
@@ -344,7 +351,7 @@ def rolling(fill: float, mass_ratio: float) -> RollingModes:
         lengths=_constant(lengths[::-1]),
         energy_shares=_constant(flatness[::-1] ** 2),
         arm=arm,
-        fill=float(fill),
+        fill=fill,
         slowest=_constant(slowest),
     )
 
