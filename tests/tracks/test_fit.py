@@ -129,6 +129,14 @@ def test_ice_fitted_as_oil_is_doubted() -> None:
     assert warned(result, "the model is wrong, or the track"), result
 
 
+def test_water_that_sloshes_is_not_the_lump_of_the_paper() -> None:
+    """Let go with a level surface, it swings through as much as the incline, and faster."""
+    water = liquid("water", math.radians(5), can=METAL)
+    lump = sliding(water.incline, can=METAL, density=998.2, damping=water.damping_law)
+    result = fitted(filmed(water, seconds=2.5), lump, "incline", "damping")
+    assert warned(result, "their difference is not like noise"), result
+
+
 def test_oil_fitted_as_water_is_doubted() -> None:
     result = fitted(filmed(OIL), WATER, known=KNOWN)
     assert warned(result, "the model is wrong, or the track"), result
