@@ -6,8 +6,9 @@ BIN := $(VENV)/bin
 PACKAGE := $(VENV)/.package
 TOOLS := $(VENV)/.tools
 LINTERS := $(VENV)/.linters
+# There is a process for each core: threads of linear algebra would only take time from the others.
 # A process that has nothing left to do takes tests from another.
-PYTEST := $(BIN)/python -m pytest -n auto --dist worksteal
+PYTEST := OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --dist worksteal
 # What is not compiled when it is installed is compiled when it is first used, and kept: less disk, and sooner done.
 export PYTHONDONTWRITEBYTECODE :=
 PIP := $(BIN)/python -m pip --disable-pip-version-check install --quiet --no-compile

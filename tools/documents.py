@@ -39,7 +39,8 @@ from mjbeer.studies.stability.judge import (
 )
 from mjbeer.studies.validation.validate import checks
 from mjbeer.theory.liquid import LIQUIDS, NAMES, centrifugal_ratio, liquid_in
-from mjbeer.theory.scene import Scene, frozen
+from mjbeer.theory.paper_scenes import frozen
+from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
 
 CHECKOUT = pathlib.Path(__file__).parents[1]

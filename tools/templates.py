@@ -16,7 +16,8 @@ from mjbeer.model.joints import initial_joints
 from mjbeer.model.model_numbers import ModelNumbers
 from mjbeer.model.setting import Setting
 from mjbeer.output import files
-from mjbeer.theory.scene import Scene, hoop, pendulum
+from mjbeer.theory.paper_scenes import hoop, pendulum
+from mjbeer.theory.scene import Scene
 
 _DIGITS = 12
 """Digits of the numbers in the files."""

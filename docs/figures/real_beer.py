@@ -18,7 +18,8 @@ from mjbeer.output.plots import COLOURS, GREY, REFERENCE, THEORY, chart, name_be
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import THICKNESS, Can, Damping
 from mjbeer.theory.liquid import LIQUIDS, NAMES, centrifugal_ratio, liquid_in
-from mjbeer.theory.scene import GRAVITY, INCLINE, Scene, frozen, sliding
+from mjbeer.theory.paper_scenes import frozen, sliding
+from mjbeer.theory.scene import GRAVITY, INCLINE, Scene
 from mjbeer.theory.segment import segment
 from mjbeer.theory.trajectory import Trajectory, exact
 

@@ -18,7 +18,8 @@ from mjbeer.exceptions import (
 )
 from mjbeer.theory.can import Can, Damping, Load
 from mjbeer.theory.liquid import liquid
-from mjbeer.theory.scene import Scene, frozen, hoop, pendulum, sliding
+from mjbeer.theory.paper_scenes import frozen, hoop, pendulum, sliding
+from mjbeer.theory.scene import Scene
 from mjbeer.theory.standing import Standing, standing
 from mjbeer.theory.trajectory import Trajectory, exact
 

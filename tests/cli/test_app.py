@@ -28,7 +28,7 @@ SCENES = {"sliding": sliding(), "frozen": frozen(), "pendulum": pendulum(), "hoo
 def test_simulate_writes_the_trajectory(
     name: str, tmp_path: pathlib.Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Brackets in a file's name are markup to the library that prints."""
+    """The file's name has brackets, which are markup to the library that prints."""
     target = tmp_path / "motion[red][" / "c].csv"
     target.parent.mkdir()
     start = ["--phi0", "57", "--phi-dot0", "-2e1"]
@@ -43,7 +43,7 @@ def test_simulate_writes_the_trajectory(
 def test_standard_output_has_the_csv_or_the_json_alone(
     tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """No can moves like that, and from 0.83 s on none could: a note, and a warning."""
+    """A note says that the can slips, and a warning that it must be pulled from 0.83 s on."""
     monkeypatch.chdir(tmp_path)
     words = ["simulate", "frozen", "--phi0", "180", "--duration", "1", "--friction", "0.6"]
     run = simulate(frozen(), 1.0, math.pi)
@@ -75,9 +75,13 @@ def test_standard_output_has_the_csv_or_the_json_alone(
             "fit can.csv sliding --phi0 up",
             "phi0 must be level, free, or a number [degrees], got 'up'",
         ),
+        (
+            "fit can.csv sliding --phi0 inf",
+            "phi0 must be level, free, or a number [degrees], got 'inf'",
+        ),
         ("benchmark slding", "scene must be one of 'sliding', 'sliding-metal', "),
-        ("simulate sliding --incline 100", "incline must be between -90 and 90 [degrees], got 100"),
-        ("sweep frozen --incline 1:100:3", "incline must be between -90 and 90 [degrees], got 100"),
+        ("simulate sliding --incline 87", "incline must be between -85 and 85 [degrees], got 87"),
+        ("sweep frozen --incline 1:86:3", "incline must be between -85 and 85 [degrees], got 86"),
         (
             "simulate sliding --phi0 inf",
             "argument --phi0: it must be a finite number [degrees], got inf",
@@ -119,7 +123,8 @@ def test_what_is_not_allowed_is_one_line_and_exit_status_2(
 
 
 def test_the_version_and_the_help_of_each_command(capsys: pytest.CaptureFixture[str]) -> None:
-    listed: dict[str, Iterable[str]] = {"": COMMANDS}  # what the help of some words lists
+    # For each command line, the names that its help lists.
+    listed: dict[str, Iterable[str]] = {"": COMMANDS}
     for command in COMMANDS:
         scenes = SCENES_OF.get(command, {})
         listed[command] = scenes
@@ -138,8 +143,22 @@ def test_the_version_and_the_help_of_each_command(capsys: pytest.CaptureFixture[
     assert capsys.readouterr().out == f"mjbeer {version('mjbeer')}\n"
 
 
+def test_a_fit_without_its_file_takes_no_scene_for_one(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    with pytest.raises(SystemExit):
+        main(["fit", "liquid", "--help"])
+    out = capsys.readouterr().out
+    assert out.startswith("usage: mjbeer fit FILE liquid [options]\n")
+    assert "--viscosity" in out
+    for words in (["fit", "liquid"], ["fit", "liquid", "--fill", "0.4"]):
+        assert main(words) == 2
+        message = "the following arguments are required: FILE; see `mjbeer fit --help`"
+        assert capsys.readouterr().err == f"mjbeer: {message}\n"
+
+
 def test_no_command_line_loads_what_draws_before_it_is_needed() -> None:
-    """Nor the simulator: a mistake and the help are told at once."""
+    """It loads no simulator either, so that a mistake and the help are told at once."""
     heavy = "{'mujoco', 'numba', 'scipy', 'matplotlib', 'mjbeer.studies.sweep'}"
     code = f"import sys; from mjbeer.cli.app import main; main(); print({heavy} & set(sys.modules))"
     assert run(["simulate", "frozen", "--phi0", "x"], code)[1] == "set()\n"
@@ -158,19 +177,8 @@ def test_an_angle_that_looks_like_radians_is_noted(
 def test_what_a_liquid_uses_is_told_and_what_speaks_against_it(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    words = [
-        "simulate",
-        "liquid",
-        "--liquid",
-        "olive oil",
-        "--fill",
-        "0.7",
-        "--phi0",
-        "20",
-        "--duration",
-        "1",
-    ]
-    assert main([*words, "--json"]) == 0
+    options = "--fill 0.7 --phi0 20 --duration 1 --json"
+    assert main(["simulate", "liquid", "--liquid", "olive oil", *options.split()]) == 0
     out, err = capsys.readouterr()
     assumed = liquid_in("olive oil", fill=0.7)
     assert err.startswith(f"{assumed}\nnote: olive oil as one lump is an order of magnitude only")

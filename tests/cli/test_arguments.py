@@ -1,8 +1,9 @@
-"""What the command line says about a scene and a run: units, defaults, and that it arrives."""
+"""The options of a scene and of a run: their units, their defaults, and the values that arrive."""
 
 import inspect
 import math
 import re
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -30,7 +31,7 @@ OWN: dict[str, Any] = {
     "radius": 0.04,
     "length": 0.2,
 }
-"""A value of its own for each parameter of a scene."""
+"""For each parameter of a scene a value that is not its default."""
 PURE_NUMBERS = {"--fill", "--friction", "--speed", "--damping-ratio"}
 
 
@@ -63,9 +64,8 @@ def test_a_scene_is_that_of_python(name: str) -> None:
 
 def test_the_options_of_the_run_arrive() -> None:
     words = (
-        "simulate frozen --phi0 -30 --phi-dot0 180 --duration 0.5 --rolling contact --integrator "
-        "discrete "
-        "--timestep 2e-3 --tolerance 1e-8 --friction 0.4 --output motion.csv"
+        "simulate frozen --phi0 -30 --phi-dot0 180 --duration 0.5 --rolling contact "
+        "--integrator discrete --timestep 2e-3 --tolerance 1e-8 --friction 0.4 --output motion.csv"
     )
     given = parse(words.split())
     assert start(given) == {"phi0": math.radians(-30), "phi_dot0": math.pi}
@@ -80,25 +80,30 @@ def test_the_options_of_the_run_arrive() -> None:
     assert str(given.output) == "motion.csv"
 
 
+MODEL = ("rolling", "integrator", "timestep", "friction", "phi_dot0")
+
+
 @pytest.mark.parametrize(
-    ("words", "meant"),
+    ("words", "function", "names"),
     [
-        ("simulate frozen", simulate),
-        ("export frozen", build),
-        ("export frozen", export),
-        ("render frozen", render),
+        ("simulate frozen", simulate, [*MODEL, "tolerance"]),
+        ("export frozen", build, MODEL),
+        ("export frozen", export, [*MODEL, "looks", "portable"]),
+        ("render frozen", render, ["camera", "height", "speed", "width"]),
     ],
 )
-def test_the_defaults_are_those_of_python(words: str, meant: object) -> None:
+def test_the_defaults_are_those_of_python(
+    words: str, function: Callable[..., Any], names: Sequence[str]
+) -> None:
     given = parse(words.split())
-    for name, parameter in inspect.signature(meant).parameters.items():
-        if hasattr(given, name) and name not in ("scene", "phi0", "output", "duration"):
-            # Which is left to Python's default.
-            assert getattr(given, name) in (parameter.default, None), name
+    parameters = inspect.signature(function).parameters
+    for name in names:
+        # None leaves the value to Python's default.
+        assert getattr(given, name) in (parameters[name].default, None), name
 
 
 def test_the_default_duration_is_that_of_python() -> None:
-    """In Python it may follow from the times of the samples, too."""
+    """Python has it in no signature, since there the times of the samples may give the duration."""
     assert parse(["simulate", "frozen"]).duration == simulate(frozen(), phi0=1.0).time[-1]
 
 
@@ -116,4 +121,6 @@ def test_a_range_a_list_or_a_number() -> None:
 )
 def test_what_is_none_of_these_is_refused(text: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["sweep", "frozen", "--fill", text]) == 2
-    assert "is no number, no list as 1,2,5, and no range as 1:20:39" in capsys.readouterr().err
+    allowed = "it must be a number, a list such as 1,2,5, or a range such as 1:20:39"
+    message = f"argument --fill: {allowed} (39 numbers from 1 to 20), got {text!r}; "
+    assert capsys.readouterr().err.startswith(f"mjbeer: {message}")

@@ -1,4 +1,4 @@
-"""Disks, folders and streams that take nothing: one line, exit status 2, and no half file."""
+"""Disks, folders and streams that refuse: an error of one line, exit status 2, and no half file."""
 
 import os
 import pathlib
@@ -23,16 +23,17 @@ linux = pytest.mark.skipif(sys.platform != "linux", reason="/dev/full is Linux's
 
 
 def little_disk() -> None:
-    """No file can become longer than 4 KiB, as if the disk were full."""
+    """Let no file become longer than 4 KiB, as if the disk were full."""
     resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
-    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # Python does the same
+    # As in Python, the signal is ignored, so that to write is an error.
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 
 
 def test_a_full_disk_leaves_the_old_file(tmp_path: pathlib.Path) -> None:
-    """The first run has room enough: in it Numba writes its caches.
+    """The first run has room enough, for Numba writes its caches then.
 
-    No bytecode is written: cut off in the checkout, it would end every later run (Python 3.11.2
-    does not notice).
+    Python writes no bytecode: a file of it that was cut off would end every later run, since Python
+    3.11.2 does not notice.
     """
     target = tmp_path / "motion.csv"
     words = ("simulate", *FROZEN, "--output", str(target))
@@ -45,31 +46,85 @@ def test_a_full_disk_leaves_the_old_file(tmp_path: pathlib.Path) -> None:
     assert os.listdir(tmp_path) == ["motion.csv"]
 
 
-@pytest.mark.parametrize("words", ["simulate frozen", "export frozen", "render frozen", *FOLDERS])
+class WorkError(Exception):
+    """What stands in for the work of a command, so that a test knows that it has begun."""
+
+
+def begin(*_: object, **__: object) -> None:
+    raise WorkError
+
+
+WORK = {
+    "simulate frozen": "cli.motions.trajectory_of",
+    "render frozen": "cli.motions.trajectory_of",
+    "render standing": "drawing.standing_film.StandingFilm.plan",
+    "fit examples/synthetic_track.csv frozen": "tracks.fit.fit",
+    "sweep frozen --fill 0.3,0.5": "studies.sweep.sweep",
+    "report": "report.page.write",
+    "benchmark": "studies.benchmark.timing.run",
+    "stability": "studies.stability.stability_study.run",
+    "paper": "paper.stories.write",
+}
+"""The function that does the work of each command."""
+ENDINGS = {"render": ".mp4", "fit": ".svg", "sweep": ".csv"}
+CHECKOUT = pathlib.Path(__file__).parents[2]
+
+
+@pytest.mark.parametrize("words", WORK)
 def test_what_cannot_be_written_is_known_before_the_work(
     words: str,
     tmp_path: pathlib.Path,
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    work = [
-        "report.page.validate",
-        "studies.benchmark.timing.run",
-        "studies.stability.stability_study.run",
-    ]
-    work.append(
-        "drawing.video._mediapy" if words == "render frozen" else "cli.motions.trajectory_of"
-    )
-    for function in work:
-        monkeypatch.setattr(
-            f"mjbeer.{function}", lambda *_, **__: pytest.fail("the work was begun")
-        )
-    ending = {"export frozen": ".xml", "render frozen": ".mp4"}.get(words, "")
+    """Where the same command can write, it begins its work."""
+    monkeypatch.chdir(CHECKOUT)
+    monkeypatch.setattr(f"mjbeer.{WORK[words]}", begin)
+    command = words.split()
+    name = f"new{ENDINGS.get(command[0], '')}"
     folder = tmp_path / "misspelt"
-    target = folder / f"new{ending}"
-    assert main([*words.split(), "--output", str(target)]) == 2
+    target = folder / name
+    assert main([*command, "--output", str(target)]) == 2
     reason = f"there is no folder {folder}; the nearest one that exists is {tmp_path}"
     assert capsys.readouterr().err == f"mjbeer: cannot write {target}: {reason}\n"
+    assert not os.listdir(tmp_path)
+    with pytest.raises(WorkError):
+        main([*command, "--output", str(tmp_path / name)])
+
+
+def test_an_export_names_the_folder_that_does_not_exist(
+    tmp_path: pathlib.Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """To export takes less than a second, so nothing is checked before."""
+    folder = tmp_path / "misspelt"
+    target = folder / "can.xml"
+    assert main(["export", "frozen", "--output", str(target)]) == 2
+    reason = f"there is no folder {folder}; the nearest one that exists is {tmp_path}"
+    assert capsys.readouterr().err == f"mjbeer: cannot write {target}: {reason}\n"
+
+
+@pytest.mark.parametrize("scene", ["frozen", "standing"])
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ("--output film.avi", "the file's name must end in .mp4, got 'film.avi'"),
+        ("--width 641", "width must be an even number of pixels up to 4096"),
+        ("--height 5000", "height must be an even number of pixels up to 4096"),
+        ("--speed 0", "speed must be greater than 0, got 0"),
+    ],
+)
+def test_the_options_of_a_film_are_checked_before_the_work(
+    scene: str,
+    options: str,
+    message: str,
+    tmp_path: pathlib.Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(f"mjbeer.{WORK[f'render {scene}']}", begin)
+    assert main(["render", scene, *options.split()]) == 2
+    assert capsys.readouterr().err.startswith(f"mjbeer: {message}")
     assert not os.listdir(tmp_path)
 
 
@@ -80,13 +135,7 @@ def test_a_folder_of_others_is_refused_before_the_work(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    for work in (
-        "report.page.write",
-        "studies.benchmark.timing.run",
-        "studies.stability.stability_study.run",
-    ):
-        monkeypatch.setattr(f"mjbeer.{work}", lambda *_: pytest.fail("the work was begun"))
-    monkeypatch.setattr("mjbeer.paper.stories.write", lambda *_: pytest.fail("the work was begun"))
+    monkeypatch.setattr(f"mjbeer.{WORK[command]}", begin)
     names = ["index.html", "stories.md", "summary.md"]
     for name in names:
         (tmp_path / name).write_text("mine")
@@ -115,6 +164,10 @@ def test_old_results_stay_if_a_command_is_interrupted_at_its_end(
     stubs.draw(monkeypatch)
     study = Study("mjbeer stability", {"quick": True}, {})
     monkeypatch.setattr("mjbeer.studies.benchmark.timing.run", lambda *_: Benchmark.load(SHIPPED))
+    monkeypatch.setattr(
+        "mjbeer.studies.benchmark.work_precision.draw",
+        lambda _, path: files.write(path.with_suffix(".svg"), "a diagram"),
+    )
     monkeypatch.setattr("mjbeer.studies.stability.stability_study.run", lambda *_: study)
     monkeypatch.setattr("mjbeer.studies.stability.stability_maps.figures", lambda _: {})
     words = [command, "--output", str(tmp_path)]
@@ -148,7 +201,7 @@ def test_a_full_standard_output() -> None:
 
 
 def test_a_closed_standard_output(tmp_path: pathlib.Path) -> None:
-    """It is known before the work, of which nothing is left."""
+    """The command notices before the work, and leaves no file."""
     target = tmp_path / "motion.csv"
     words = ["simulate", *FROZEN, "--output", str(target)]
     status, _, err = run(words, preexec_fn=lambda: os.close(1))
@@ -158,7 +211,7 @@ def test_a_closed_standard_output(tmp_path: pathlib.Path) -> None:
 
 @pytest.mark.parametrize("words", [(), ("--output", "-", "--duration", "2")])
 def test_a_reader_that_goes_away(words: tuple[str, ...]) -> None:
-    """Of less and of more than Python and the pipe keep in between."""
+    """One output fits into the buffers of Python and of the pipe, the other does not."""
     reader, writer = os.pipe()
     os.close(reader)
     try:

@@ -18,32 +18,19 @@ pytestmark = pytest.mark.slow
 MESSAGE = "mjbeer: interrupted; what was written is whole\n"
 
 
-@pytest.mark.parametrize(
-    ("handler", "numbers", "status"),
-    [
-        (signal.SIG_DFL, [signal.SIGHUP], 129),
-        (
-            signal.SIG_IGN,
-            [signal.SIGHUP, signal.SIGTERM],
-            143,
-        ),  # as under nohup: SIGHUP stays ignored
-    ],
-)
-def test_a_report_ends_with_its_processes(
-    handler: signal.Handlers, numbers: list[int], status: int, tmp_path: pathlib.Path
-) -> None:
-    """The films are not drawn, and the plot never ends.
+def test_a_report_ends_with_its_processes(tmp_path: pathlib.Path) -> None:
+    """Nothing is checked, no film is drawn, and the plot never ends.
 
     Its hidden file goes, and a file of a like name does not.
     """
     code = (
         "import sys; "
         "from mjbeer.cli.app import main; "
-        "from mjbeer.drawing.video import PlotJob; "
         "from mjbeer.report import films, page; "
-        "from tests.support.processes import draw_and_sleep; "
+        "from tests.support import processes; "
         "films.film_jobs = lambda folder, quick: []; "
-        "page.plot_jobs = lambda folder: [PlotJob(draw_and_sleep, folder / 'plot')]; "
+        "page.validate = processes.sleep; "
+        "page.plot_jobs = lambda folder: [processes.EndlessPlot(folder / 'plot')]; "
         "sys.exit(main())"
     )
     folder = tmp_path / "new"
@@ -51,13 +38,35 @@ def test_a_report_ends_with_its_processes(
         (folder / "index.html").write_text("of an earlier report")
         (folder / ".plot-of-mine").write_text("mine")
     before = {*os.listdir(folder), ".lock"}
-    words = ["report", "--output", str(folder)]
-    with start(words, code, preexec_fn=lambda: signal.signal(signal.SIGHUP, handler)) as process:
+
+    with start(["report", "--output", str(folder)], code) as process:
         hear(process, "drawing")
-        ended, messages = interrupt(process, *numbers)
-    assert ended == status
+        ended, messages = interrupt(process, signal.SIGHUP)
+
+    assert ended == 128 + signal.SIGHUP
     # SIGHUP ends a helper of Python's own as well, of which it complains to the closed terminal.
     assert MESSAGE in messages
     assert {*os.listdir(folder), ".lock"} == before
     assert (folder / "index.html").read_text() == "of an earlier report"
     assert (folder / ".plot-of-mine").read_text() == "mine"
+
+
+def test_a_closed_terminal_does_not_end_what_ignores_it_and_sigterm_does() -> None:
+    """As under nohup: SIGHUP stays ignored. The processes of the command end, too."""
+    code = (
+        "import sys; "
+        "from mjbeer.cli import app; "
+        "from tests.support import processes; "
+        "app.COMMANDS['validate'] = processes.two_that_sleep; "
+        "sys.exit(app.main())"
+    )
+
+    def ignore() -> None:
+        signal.signal(signal.SIGHUP, signal.SIG_IGN)
+
+    with start(["validate"], code, preexec_fn=ignore) as process:
+        hear(process, "at work")
+        ended, messages = interrupt(process, signal.SIGHUP, signal.SIGTERM)
+
+    assert ended == 128 + signal.SIGTERM
+    assert messages == MESSAGE

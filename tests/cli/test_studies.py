@@ -10,8 +10,10 @@ import mjbeer
 from mjbeer.cli.app import main
 
 
-def read_table(path: pathlib.Path) -> np.ndarray:
-    return np.genfromtxt(path, delimiter=",", names=True)
+def read_table(path: pathlib.Path) -> dict[str, np.ndarray]:
+    """Return the columns of a CSV file by their headings, which keep their brackets."""
+    table = np.genfromtxt(path, delimiter=",", names=True, deletechars="", replace_space=" ")
+    return {heading: table[heading] for heading in table.dtype.names or ()}
 
 
 @pytest.mark.slow
@@ -26,19 +28,31 @@ def test_the_file_has_what_python_gives(
     assert out == "2: all went well; 2: a quantity has no value\n"
     assert f"wrote {path}" in err
     assert err.startswith(
-        "failed: scene 2 (incline[1] = 1.0472, fill[0] = 0.3): "
+        "failed: scene 2 (incline[1] = 60 degrees, fill[0] = 0.3): "
         "period: no equilibrium at an incline of 60 degrees"
     )
-    if ending in (".csv", ".nc"):
-        inclines = np.radians([5, 60])
-        same = mjbeer.sweep(
-            mjbeer.frozen, 0.8, np.radians(20), tolerance=1e-6, incline=inclines, fill=[0.3, 0.5]
-        )
-        read = {".csv": read_table, ".nc": xarray.load_dataset}[ending]
-        table = read(path)
-        assert np.ravel(table["phi"]).tolist() == np.ravel(same["phi"]).tolist()
+    inclines = np.radians([5, 60])
+    same = mjbeer.sweep(
+        mjbeer.frozen, 0.8, np.radians(20), tolerance=1e-6, incline=inclines, fill=[0.3, 0.5]
+    )
+    if ending == ".csv":
+        table = read_table(path)
+        assert table["incline [rad]"].tolist() == np.repeat(inclines, 2).tolist()
+        assert table["fill"].tolist() == [0.3, 0.5, 0.3, 0.5]
+        assert table["phi [rad]"].tolist() == np.ravel(same["phi"]).tolist()
+    elif ending == ".nc":
+        assert xarray.load_dataset(path)["phi"].values.tolist() == same["phi"].values.tolist()
     else:
         assert path.stat().st_size > 5000
+
+
+def test_a_single_scene_is_a_table_of_one_row(tmp_path: pathlib.Path) -> None:
+    path = tmp_path / "table.csv"
+    assert main(["sweep", "frozen", "--duration", "0.1", "--output", str(path)]) == 0
+    run = mjbeer.simulate(mjbeer.frozen(), 0.1, np.radians(60), tolerance=1e-6, times=[0.1])
+    table = read_table(path)
+    assert table["phi [rad]"] == run.phi[0]
+    assert "fill" not in table
 
 
 def test_a_file_of_another_sweep_is_refused(
@@ -69,3 +83,18 @@ def test_each_scene_of_a_sweep_has_the_damping_of_its_incline(
         progress=False,
     )
     assert xarray.load_dataset(path)["u"].values.tolist() == same["u"].values.tolist()
+
+
+def test_a_table_has_units_and_a_failure_has_degrees(
+    tmp_path: pathlib.Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """As `mjbeer simulate` has them in its CSV; the options were in degrees and degrees/s."""
+    path = tmp_path / "table.csv"
+    options = "--phi0 10,20 --phi-dot0 60,5000 --quantity period --duration 0.1"
+    assert main(["sweep", "frozen", *options.split(), "--output", str(path)]) == 0
+    angles = "phi0[0] = 10 degrees, phi_dot0[0] = 60 degrees/s"
+    assert f"failed: scene 0 ({angles}): period: " in capsys.readouterr().err
+    table = read_table(path)
+    assert table["phi0 [rad]"].tolist() == np.radians([10, 10, 20, 20]).tolist()
+    assert table["phi_dot0 [rad/s]"].tolist() == np.radians([60, 5000, 60, 5000]).tolist()
+    assert {"u [m]", "period [s]", "lowest_normal [N]", "trusted", "status"} <= set(table)

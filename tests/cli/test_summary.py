@@ -12,19 +12,22 @@ from mjbeer import Scene, exact, frozen, hoop, liquid, simulate, sliding
 from mjbeer.cli.motions import Summary
 from mjbeer.simulation.run import Run
 
-# Let go with the beer on top, the can hops at 0.834 s. Before, rolling needs ever more friction:
-# 1.839 within 0.8 s.
 START = math.pi
+"""The beer is on top. The can hops at 0.834 s, and before that needs ever more friction to roll."""
 SHORT = 0.8
+"""A duration [s] without the hop; the largest friction coefficient needed in it is 1.839."""
 LONG = 0.9
+"""A duration [s] with the hop."""
 
 
 def lines(trajectory: Run, friction: float = 1.0) -> dict[str, str]:
+    """Return the text of the summary, by the names at the beginning of its lines."""
     text = Summary(trajectory, friction).text()
     return {line[:31].strip(): line[32:] for line in text.splitlines()}
 
 
 def content(trajectory: Run, friction: float = 1.0) -> dict[str, Any]:
+    """Return the JSON of the summary."""
     return json.loads(Summary(trajectory, friction).json(), parse_constant=pytest.fail)
 
 
@@ -43,7 +46,8 @@ def test_text_and_json_have_what_a_run_says_about_itself() -> None:
         "largest normal force needed [N]": run.forces.normal.max(),
         "can roll without slipping until [s]": run.rolls_until(0.05),
         "warnings": list(run.warnings),
-        "notes": [],  # in contact the can simply slips, and a warning says so
+        # In contact the can simply slips, and a warning says so.
+        "notes": [],
     }
     figures = content(run, 0.05)
     assert {name: figures[name] for name in expected} == expected
@@ -101,13 +105,14 @@ def test_a_damped_run_has_its_steady_rolling_and_its_modes_or_says_why_not() -> 
 
 @pytest.mark.parametrize("friction", [0.6, 1.8, 2.0])
 def test_until_when_a_can_rolls_with_a_friction(friction: float) -> None:
-    """Beside the exact motion: at that time it needs the coefficient that was given.
+    """At that time the exact motion needs the coefficient that was given.
 
-    It needs 1.839 at most.
+    With a coefficient above 1.839 the can rolls to the end.
     """
     run = simulate(frozen(), SHORT, START, tolerance=1e-10)
     summary = Summary(run, friction)
-    assert run.trusted  # the motion is right, if the can rolls
+    # The motion is right if the can rolls.
+    assert run.trusted
     if friction == 2.0:
         assert summary.rolls_until == math.inf
         assert content(run, friction)["can roll without slipping until [s]"] is None
@@ -117,8 +122,8 @@ def test_until_when_a_can_rolls_with_a_friction(friction: float) -> None:
     (note,) = summary.notes
     assert f"until t = {until:.6g} s with friction {friction:g}\n" in summary.text()
     assert f"from t = {until:.6g} s with a friction coefficient of {friction:g}" in note
-    # The time is interpolated between steps on a straight line: the coefficient is off by up to
-    # 0.0013 near its top.
+    # The time is interpolated linearly between steps: near the largest coefficient this makes an
+    # error of up to 0.0013.
     (needed,) = exact(frozen(), [until], START).forces.needed_friction
     assert needed == pytest.approx(friction, rel=2e-3)
 

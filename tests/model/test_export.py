@@ -35,7 +35,7 @@ from mjbeer.model.setting import (
     supported,
 )
 from mjbeer.theory.can import Damping
-from mjbeer.theory.equations import kinetic_energy
+from mjbeer.theory.equations import Coordinates, kinetic_energy
 from tests.support.scenes import METAL, SCENES, coordinates
 from tools import portability as others
 from tools.portability import BY_NAME, FRICTION, START
@@ -99,18 +99,28 @@ POSES = (
 def move(
     path: pathlib.Path, scene: Scene, start: tuple[float, float] = START, duration: float = 1.0
 ) -> float:
-    """Return the error of phi [rad] and u/a after a time [s] of nothing but mj_step from the
-    keyframe."""
+    """Return the error of phi [rad] and u/a after a time [s] of an export."""
     model = mujoco.MjModel.from_xml_path(str(path))
+    found = moved(model, scene, start, duration)
+    return distance(found, exact(scene, found.time, *start), scene)
+
+
+def moved(
+    model: mujoco.MjModel, scene: Scene, start: tuple[float, float], duration: float
+) -> Coordinates:
+    """Return the state after a time [s] of nothing but mj_step from the keyframe."""
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, model.key("start").id)
     state = np.concatenate([data.qpos, data.qvel])
     assert np.allclose(state, initial_state(model, scene, *start), rtol=DIGITS, atol=0)
     mujoco.mj_step(model, data, round(duration / model.opt.timestep))
     assert not any(warning.number for warning in data.warning)
-    found = coordinates(model, data, scene)
-    truth = exact(scene, found.time, *start)
-    return max(abs(found.phi[0] - truth.phi[0]), abs(found.u[0] - truth.u[0]) / scene.can.radius)
+    return coordinates(model, data, scene)
+
+
+def distance(one: Coordinates, other: Coordinates, scene: Scene) -> float:
+    """Return how far two states are apart in phi [rad] or u/a."""
+    return max(abs(one.phi[0] - other.phi[0]), abs(one.u[0] - other.u[0]) / scene.can.radius)
 
 
 def assert_same(shown: mujoco.MjModel, path: pathlib.Path) -> None:
@@ -153,15 +163,6 @@ def vertices(model: mujoco.MjModel, data: mujoco.MjData) -> np.ndarray:
     return np.concatenate(places)
 
 
-def coordinates_after_a_second(model: mujoco.MjModel, scene: Scene) -> np.ndarray:
-    """Return phi and u in radii, by nothing but mj_step from the keyframe."""
-    data = mujoco.MjData(model)
-    mujoco.mj_resetDataKeyframe(model, data, model.key("start").id)
-    mujoco.mj_step(model, data, round(1 / model.opt.timestep))
-    found = coordinates(model, data, scene)
-    return np.array([found.phi[0], found.u[0] / scene.can.radius])
-
-
 def moved_aside(model: mujoco.MjModel) -> mujoco.MjData:
     data = mujoco.MjData(model)
     data.qpos += 0.5
@@ -180,24 +181,25 @@ def test_an_export_is_the_model_and_moves_exactly(
     path = tmp_path / "model.xml"
     timestep = others.timestep(name)
     how = {"timestep": timestep, "friction": FRICTION, "portable": portable}
+
     export(scene, path, *START, rolling, **how, looks="plain" if portable else "full")
+
     text = path.read_text()
     assert not re.search(r"\b(file|\w+dir)=|<include", text)
     assert f"Written by mjbeer: rolling={rolling!r}" in text
-    assert move(path, scene) < TOLERANCE[rolling]
+    read = mujoco.MjModel.from_xml_path(str(path))
+    after = moved(read, scene, START, 1.0)
+    assert distance(after, exact(scene, after.time, *START), scene) < TOLERANCE[rolling]
     if not portable:
         setting = Setting(rolling, timestep=timestep, friction=FRICTION)
         spec = rolling_spec(scene, setting, visuals=True)
         add_start(spec, scene, *START)
         shown = spec.compile()
         assert_same(shown, path)
-        exactly = coordinates_after_a_second(shown, scene)
-        read = mujoco.MjModel.from_xml_path(str(path))
         # A hundredth of what RK4 misses, 4e-8 rad.
-        assert np.abs(coordinates_after_a_second(read, scene) - exactly).max() < 4e-10
+        assert distance(after, moved(shown, scene, START, 1.0), scene) < 4e-10
         return
     shown = rolling_spec(scene, Setting(rolling), visuals=True).compile()
-    read = mujoco.MjModel.from_xml_path(str(path))
     for camera in ("side", "quarter"):  # they were in a frame
         sight = read.cam_mat0[read.camera(camera).id]
         expected = shown.cam_mat0[shown.camera(camera).id]

@@ -48,6 +48,18 @@ def test_a_folder_that_may_be_misspelt_is_not_made(tmp_path: pathlib.Path) -> No
     assert os.listdir(tmp_path) == ["results"]
 
 
+def test_a_check_leaves_the_old_file_and_nothing_else(tmp_path: pathlib.Path) -> None:
+    target = tmp_path / "film.mp4"
+    files.check_writable(target)
+    assert not os.listdir(tmp_path)
+    target.write_text("old")
+    files.check_writable(target)
+    assert target.read_text() == "old"
+    assert os.listdir(tmp_path) == ["film.mp4"]
+    with pytest.raises(OutputError, match=f"cannot write {tmp_path}: it is a folder"):
+        files.check_writable(tmp_path)
+
+
 @pytest.mark.parametrize("error", [RuntimeError("drawing failed"), KeyboardInterrupt()])
 def test_what_fails_leaves_the_old_file_and_nothing_else(
     tmp_path: pathlib.Path, error: BaseException

@@ -1,4 +1,4 @@
-"""The audit: every equation has its row, which passes, and fails on a misprint or a broken form."""
+"""The audit: every equation has a row, which passes, and fails if the equation is a broken one."""
 
 import dataclasses
 import re
@@ -24,7 +24,7 @@ from mjbeer.paper.witness import EXACT, HELD, METAL, ROLL_DOWN, SWING, WHEEL
 ROWS = paper.claims()
 NAMES = [f"{row.equation} {row.quantity}" for row in ROWS]
 BROKEN = 0.01
-"""What a term of a broken form is off by, or twenty bounds where these are wide."""
+"""Relative error of one term in a broken equation; it is twenty bounds where that is more."""
 
 
 @pytest.mark.slow
@@ -35,7 +35,7 @@ def test_row(row: Claim) -> None:
 
 
 def test_every_equation_footnote_with_a_claim_and_figure_with_data_has_a_row() -> None:
-    """Footnotes 3 and 5 only name things, and so do all figures but 1 and 2."""
+    """Footnotes 3 and 5 only name things, and so do the figures that are not listed here."""
     named = " ".join(row.equation for row in ROWS)
     equations = {int(number) for number in re.findall(r"\((\d+)\)", named)}
     footnotes = {int(number) for number in re.findall(r"footnote (\d+)", named)}
@@ -52,7 +52,7 @@ def test_what_is_no_numbered_equation_is_quoted() -> None:
 
 
 def test_kinds_of_what_is_wrong() -> None:
-    """A consequence is one of a misprint; what misses does so by more than the bound."""
+    """A consequence names its misprint; a wrong form misses by more than five bounds."""
     wrong = [(row.equation, row.misprint) for row in ROWS if row.misprint]
     kinds = Counter(misprint.kind for _, misprint in wrong)
     assert kinds == {MISPRINT: 18, CONSEQUENCE: 4, APPROXIMATION: 3}
@@ -61,33 +61,37 @@ def test_kinds_of_what_is_wrong() -> None:
         assert (misprint.of in slips) == (misprint.kind == CONSEQUENCE)
     for row in ROWS:
         assert not (row.misprint and row.limit)
-        other = row.misprint or row.limit
-        assert other is None or other.expected_error > 5 * row.bound.error
+        must_fail = row.misprint or row.limit
+        assert must_fail is None or must_fail.expected_error > 5 * row.bound.error
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "row", [row for row in ROWS if row.verdict != CONFIRMED], ids=lambda row: row.equation
 )
-def test_a_misprint_that_is_none_is_found_out(row: Claim) -> None:
-    """The row would fail if the printed form were right, or the right form the printed one."""
+def test_a_row_fails_if_the_wrong_form_is_right_or_the_right_form_is_wrong(row: Claim) -> None:
+    """For a limit, the case beyond it stands for the wrong form."""
     if row.misprint:
-        none = dataclasses.replace(
-            row, misprint=dataclasses.replace(row.misprint, wrong=row.residual)
-        )
-        wrong = dataclasses.replace(row, residual=row.printed)
+        misprint = dataclasses.replace(row.misprint, wrong=row.residual)
+        both_right = dataclasses.replace(row, misprint=misprint)
+        both_wrong = dataclasses.replace(row, residual=row.printed)
     else:
         assert row.limit
-        none = dataclasses.replace(row, limit=row.limit._replace(observe=row.witness.observe))
-        wrong = dataclasses.replace(row, witness=row.witness._replace(observe=row.limit.observe))
-    assert not none.measure().passed
-    assert not wrong.measure().passed
+        limit = row.limit._replace(observe=row.witness.observe)
+        witness = row.witness._replace(observe=row.limit.observe)
+        both_right = dataclasses.replace(row, limit=limit)
+        both_wrong = dataclasses.replace(row, witness=witness)
+    assert not both_right.measure().passed
+    assert not both_wrong.measure().passed
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("row", ROWS, ids=NAMES)
 def test_each_term_counts(row: Claim) -> None:
-    """A form with one of its terms off by a hundredth fails, unless that is next to nothing."""
+    """An equation fails if one of its terms is wrong by a hundredth.
+
+    A term below a thousandth of the largest need not count.
+    """
     observed = row.witness.observe()
     right = terms(row.residual, observed)
     scale = value(row.scale, observed) if row.scale else None
@@ -110,16 +114,17 @@ ACCELERATION = next(row for row in ROWS if row.equation == "(15)")
 
 @pytest.mark.parametrize("row", [*MOTIONS, ACCELERATION], ids=lambda row: row.equation)
 def test_an_equation_of_motion_has_no_idle_term_and_no_wrong_constant(row: Claim) -> None:
-    """Each term has more than a thousandth of the largest, so that the motion tries it.
+    """Each term exceeds a thousandth of the largest, so that the motion tests it.
 
-    A row also fails where g or b is wrong by 1e-5.
+    A row also fails if g or b is wrong by 1e-5.
     """
-    q = row.witness.observe()
-    sizes = [float(np.abs(term).max()) for term in terms(row.residual, q)]
+    observed = row.witness.observe()
+    sizes = [float(np.abs(term).max()) for term in terms(row.residual, observed)]
     assert min(sizes) > 1e-3 * max(sizes)
     constants = ["g"] if row is ACCELERATION else ["g", "b"]
     for constant in constants:
-        wrong = Observation(**vars(q) | {constant: getattr(q, constant) * (1 + 1e-5)})
+        changed = getattr(observed, constant) * (1 + 1e-5)
+        wrong = Observation(**vars(observed) | {constant: changed})
         assert row.bound == (EXACT if row.witness is SWING else HELD)
         assert relative_residual(terms(row.residual, wrong)) > row.bound.error
 

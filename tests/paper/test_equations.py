@@ -1,4 +1,4 @@
-"""The rows, derived with symbols by Lagrange's equations; a misprint does not follow."""
+"""The equations of the rows, derived by Lagrange's equations; a misprint does not follow."""
 
 from functools import cache
 from typing import Any
@@ -25,17 +25,17 @@ GIVEN = {
     WHEEL: {can_inertia: can_mass * a**2, inertia: 0},
     **dict.fromkeys((ROLL_DOWN, FOOTNOTE_8), HALF | ROLLS),
 }
-"""What is special about the scenes of the motions that rows share."""
+"""What holds in the scene of each motion that rows share: no can, a half cylinder, rolling."""
 
 
 def slope(value: Any) -> Any:
-    """The derivative by time."""
+    """Return the derivative with respect to time."""
     rates = {u: u_dot, phi: phi_dot, u_dot: u_ddot, phi_dot: phi_ddot}
     return sum(sp.diff(value, coordinate) * rate for coordinate, rate in rates.items())
 
 
 class Symbols(Observation):
-    """Equations name sines and the like, which are those of symbols here."""
+    """The symbols in equations, with the functions of SymPy for those of NumPy."""
 
     sin = sp.sin
     cos = sp.cos
@@ -43,10 +43,10 @@ class Symbols(Observation):
 
 
 def letters() -> Symbols:
-    """Symbols for everything.
+    """Return a symbol or an expression for every name in an equation.
 
-    The load is at (u - b sin(phi), -b cos(phi)) from where the axis starts; the can turns at
-    u_dot/a.
+    The load is at (u - b sin(phi), -b cos(phi)), seen from where the axis starts, and the can turns
+    at u_dot/a.
     """
     x = u - b * sp.sin(phi)
     y = -b * sp.cos(phi)
@@ -86,7 +86,7 @@ Q = letters()
 
 @cache
 def accelerations(witness: Witness) -> dict:
-    """u_ddot and phi_ddot by Lagrange's equations, d/dt dL/d(q_dot) = dL/dq."""
+    """Return u_ddot and phi_ddot by Lagrange's equations, d/dt dL/d(q_dot) = dL/dq."""
     given = GIVEN[witness]
     lagrangian = (Q.kinetic - Q.potential).subs(given)
     moved = {phi: phi_dot} if u in given else {u: u_dot, phi: phi_dot}
@@ -94,16 +94,23 @@ def accelerations(witness: Witness) -> dict:
         slope(sp.diff(lagrangian, rate)) - sp.diff(lagrangian, coordinate)
         for coordinate, rate in moved.items()
     ]
-    return sp.solve(equations, [u_ddot, phi_ddot][-len(moved) :], dict=True)[0]
+    unknowns = [phi_ddot] if u in given else [u_ddot, phi_ddot]
+    (solution,) = sp.solve(equations, unknowns, dict=True)
+    return solution
 
 
-def vanishes(whole: Any, witness: Witness) -> bool:
-    whole = sp.expand_trig(whole.subs(GIVEN[witness]).subs(accelerations(witness)))
-    top = sp.expand(sp.numer(sp.together(whole.subs(PLAIN))))
-    return sp.rem(sp.rem(top, S**2 + C**2 - 1, S), A**2 + B**2 - 1, A) == 0
+def vanishes(expression: Any, witness: Witness) -> bool:
+    """Whether an expression is zero for every motion of a witness's scene.
+
+    Sines and cosines become letters, so that the numerator is a polynomial in them.
+    """
+    moving = sp.expand_trig(expression.subs(GIVEN[witness]).subs(accelerations(witness)))
+    numerator = sp.expand(sp.numer(sp.together(moving.subs(PLAIN))))
+    without_s = sp.rem(numerator, S**2 + C**2 - 1, S)
+    return sp.rem(without_s, A**2 + B**2 - 1, A) == 0
 
 
-# Eq. (1) holds over time.
+# Eq. (1) is about a time since the start, and a linear equation is only near the truth.
 DERIVED = [
     row
     for row in paper.claims()
@@ -123,7 +130,7 @@ def test_every_equation_of_a_motion_is_derived() -> None:
 @pytest.mark.costly
 @pytest.mark.parametrize("row", DERIVED, ids=lambda row: f"{row.equation} {row.quantity}")
 def test_derived(row: Claim) -> None:
-    """No term vanishes by itself, so that none can be left out; a misprint does not follow."""
+    """No term vanishes by itself, so none can be left out; a misprint does not follow."""
     right = terms(row.residual, Q)
     assert vanishes(sum(right), row.witness)
     for term in right:
@@ -132,50 +139,75 @@ def test_derived(row: Claim) -> None:
         assert not vanishes(value(row.printed, Q), row.witness)
 
 
+def is_value_of(formula: str, expected: Any, given: dict[Any, Any]) -> bool:
+    """Whether a formula has an expected value where some symbols are `given`."""
+    return sp.simplify((value(formula, Q) - expected).subs(given)) == 0
+
+
 @pytest.mark.slow
-def test_small_oscillations() -> None:
-    """Eqs. (4)-(6), (10), (24): the linear part of (16); eq. (55): that of (52)."""
+def test_frequencies_of_sliding_beer() -> None:
+    """Eqs. (6), (10) and (24) follow from the linear part of (16)."""
+    omega_squared = -sp.diff(accelerations(SWING)[phi_ddot], phi).subs({phi: 0, phi_dot: 0})
+    half_cylinder = {b: 4 * a / (3 * sp.pi)}
+    assert is_value_of(sliding.EQ_6, omega_squared, {inertia: HALF[inertia]})
+    assert is_value_of(sliding.EQ_24, omega_squared, {})
+    assert is_value_of(sliding.EQ_10, omega_squared, half_cylinder)
+    assert not is_value_of(sliding.PRINTED_10, omega_squared, half_cylinder)
+
+
+@pytest.mark.slow
+def test_frequency_of_frozen_beer() -> None:
+    """Eq. (55) follows from the linear part of (52)."""
     x = sp.symbols("x", real=True)
-    half = {inertia: HALF[inertia]}
-    whole = {b: 4 * a / (3 * sp.pi)}
-    squared = -sp.diff(accelerations(SWING)[phi_ddot], phi).subs({phi: 0, phi_dot: 0})
     torque = g * (a * sp.sin(alpha) - b * sp.sin(alpha + Q.rest + x))
-    frozen_squared = -torque.diff(x).subs(x, 0) / (3 * a**2 / 2 - 2 * a * b * sp.cos(Q.rest))
-    for formula, expected, given, right in (
-        (sliding.EQ_6, squared, half, True),
-        (sliding.EQ_24, squared, {}, True),
-        (sliding.EQ_10, squared, whole, True),
-        (sliding.PRINTED_10, squared, whole, False),
-        (frozen.EQ_55.format(2), frozen_squared, {}, True),
-        (frozen.EQ_55.format(1), frozen_squared, {}, False),
-    ):
-        assert (sp.simplify((value(formula, Q) - expected).subs(given)) == 0) is right
+    effective_inertia = 3 * a**2 / 2 - 2 * a * b * sp.cos(Q.rest)
+    omega_squared = -torque.diff(x).subs(x, 0) / effective_inertia
+    assert is_value_of(frozen.EQ_55.format(2), omega_squared, {})
+    assert not is_value_of(frozen.EQ_55.format(1), omega_squared, {})
+
+
+def test_linear_torque_about_c() -> None:
+    """Eq. (4) has the slope of its exact form, and as printed it has not."""
     (linear,) = (row for row in paper.claims() if row.equation == "(4)" and row.misprint)
-    for formula, right in ((linear.residual, True), (linear.printed, False)):
-        assert (sp.diff(value(formula, Q), phi).subs(phi, 0) == 0) is right
+    assert sp.diff(value(linear.residual, Q), phi).subs(phi, 0) == 0
+    assert sp.diff(value(linear.printed, Q), phi).subs(phi, 0) != 0
+
+
+def first_order(expression: Any, small: sp.Symbol) -> Any:
+    """Return an expression to first order in a small symbol."""
+    return sp.series(expression, small, 0, 2).removeO()
+
+
+def amplitude(expression: Any, angle: sp.Symbol) -> Any:
+    """Return the amplitude of sin(angle) in an expression, by Fourier's integral."""
+    product = sp.expand_trig(sp.expand(expression)) * sp.sin(angle)
+    return sp.integrate(product, (angle, 0, 2 * sp.pi)) / sp.pi
 
 
 @pytest.mark.costly
 def test_fast_loops() -> None:
-    """Eqs. (26)-(29) to first order in delta: J phi_dot^2/2 = E, then with a little potential.
+    """Eqs. (26)-(29) to first order in delta.
 
-    In the phase psi that sqrt(J) grows with, phi = psi + (delta/4) sin(2 psi), and V = -D cos(phi)
-    shifts psi by (D/2E) times the integral of cos(phi). What is left at Omega has 1 - delta/8 from
-    the integral and -delta/4 from the shift within sin(2 psi).
+    Without a potential J phi_dot^2/2 = E, with J in proportion to 1 - delta cos(2 phi), and phi is
+    psi + (delta/4) sin(2 psi) in a phase psi that grows evenly. A potential -D cos(phi) shifts psi
+    by e = D/(2E) times the integral of cos(phi).
     """
     psi, delta, e, w = sp.symbols("psi delta e w", real=True)
     eta = delta / 4
-    root = sp.series(sp.sqrt(1 - delta * sp.cos(2 * psi)), delta, 0, 2).removeO()
-    assert sp.simplify(sp.integrate(root, (psi, 0, psi)) - (psi - eta * sp.sin(2 * psi))) == 0
-    first = sp.series(sp.cos(psi + eta * sp.sin(2 * psi)), delta, 0, 2).removeO()
-    shift = sp.integrate(sp.expand_trig(first) * sp.cos(psi), (psi, 0, 2 * sp.pi)) / sp.pi
+
+    root_of_j = first_order(sp.sqrt(1 - delta * sp.cos(2 * psi)), delta)
+    phase = sp.integrate(root_of_j, (psi, 0, psi))
+    assert sp.simplify(phase - (psi - eta * sp.sin(2 * psi))) == 0
+
+    cosine = sp.expand_trig(first_order(sp.cos(psi + eta * sp.sin(2 * psi)), delta))
+    shift = sp.integrate(cosine * sp.cos(psi), (psi, 0, 2 * sp.pi)) / sp.pi
     assert sp.simplify(shift - (1 - delta / 8)) == 0
-    moved = e * shift * sp.sin(w)
-    angle = moved + (eta * sp.sin(2 * (w + moved))).series(e, 0, 2).removeO()
-    at_omega = sp.integrate(sp.expand_trig(sp.expand(angle)) * sp.sin(w), (w, 0, 2 * sp.pi)) / sp.pi
-    assert sp.simplify(sp.series(at_omega / e, delta, 0, 2).removeO() - (1 - 3 * delta / 8)) == 0
-    sway = sp.series(sp.sin(w + eta * sp.sin(2 * w)), delta, 0, 2).removeO()
-    assert (
-        sp.simplify(sp.integrate(sway * sp.sin(w), (w, 0, 2 * sp.pi)) / sp.pi - (1 + delta / 8))
-        == 0
-    )
+
+    # The ripple of phi at Omega: 1 - delta/8 from the shift, -delta/4 from that within sin(2 psi).
+    shifted = e * shift * sp.sin(w)
+    ripple = shifted + first_order(eta * sp.sin(2 * (w + shifted)), e)
+    assert sp.simplify(first_order(amplitude(ripple, w) / e, delta) - (1 - 3 * delta / 8)) == 0
+
+    # The ripple of u at Omega, divided by b.
+    sway = first_order(sp.sin(w + eta * sp.sin(2 * w)), delta)
+    assert sp.simplify(amplitude(sway, w) - (1 + delta / 8)) == 0

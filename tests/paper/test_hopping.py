@@ -1,10 +1,11 @@
 """The hoop with a weight on its rim: closed forms and contact runs against theory.
 
-g = r = 1, hoop m = I = 1, weight M = 3, mu = 0.2 is the setting in which W. F. D. Theron and M. F.
-Maritz, "The amazing variety of motions of a loaded hoop" (2008), can be compared with.
+The hoop has g = r = 1, m = I = 1, a weight M = 3 and mu = 0.2, as in W. F. D. Theron and M. F.
+Maritz, "The amazing variety of motions of a loaded hoop" (2008).
 """
 
 import math
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -13,73 +14,97 @@ from scipy.integrate import solve_ivp
 from mjbeer import exact, hoop, simulate
 from mjbeer.paper import hopping
 from mjbeer.theory.equations import rolling_forces
+from mjbeer.theory.trajectory import Trajectory
 
 MU = 0.2
 WEIGHT = 3.0
 HOOP = 1.0
 SCENE = hoop(hoop_mass=HOOP, load_mass=WEIGHT, radius=1.0, length=1.0, gravity=1.0)
-# A contact is soft over a time constant of one timestep, 5e-4 s, in which the rim goes as many
-# radians.
 SOFT = 1e-3
+"""A contact is soft for about a timestep of 5e-4 s, in which the rim moves by about 5e-4."""
 
 
-def accelerations(phi: float, rate: float, push: float) -> np.ndarray:
-    """u_ddot, phi_ddot and N with F = `push` N.
+class Accelerations(NamedTuple):
+    """The accelerations of a hoop that slides, and the normal force."""
 
-    They follow from Newton's laws for the whole and Lagrange's for phi.
+    u_ddot: float
+    phi_ddot: float
+    normal: float
+
+
+def sliding(phi: float, phi_dot: float, friction: float) -> Accelerations:
+    """Return the motion of a hoop whose friction is F = `friction` N.
+
+    The three equations are Newton's for the whole, along and across the ground, and Lagrange's for
+    phi.
     """
     sin = math.sin(phi)
     cos = math.cos(phi)
     matrix = np.array(
         [
-            [HOOP + WEIGHT, -WEIGHT * cos, push],
-            [-WEIGHT * cos, HOOP + WEIGHT, -push],
+            [HOOP + WEIGHT, -WEIGHT * cos, friction],
+            [-WEIGHT * cos, HOOP + WEIGHT, -friction],
             [0.0, -WEIGHT * sin, 1.0],
         ]
     )
-    right = [-WEIGHT * sin * rate**2, -WEIGHT * sin, HOOP + WEIGHT + WEIGHT * cos * rate**2]
-    return np.linalg.solve(matrix, right)
+    right = [
+        -WEIGHT * sin * phi_dot**2,
+        -WEIGHT * sin,
+        HOOP + WEIGHT + WEIGHT * cos * phi_dot**2,
+    ]
+    return Accelerations(*np.linalg.solve(matrix, right))
+
+
+def slide_until_it_grips(rolling: Trajectory, friction: float) -> Any:
+    """Return SciPy's solution of u, phi and their rates, from the end of a rolling motion on."""
+    began = rolling.time[-1]
+
+    def rates(_: float, state: np.ndarray) -> list[float]:
+        _, phi, u_dot, phi_dot = state
+        motion = sliding(phi, phi_dot, friction)
+        return [u_dot, phi_dot, motion.u_ddot, motion.phi_ddot]
+
+    def grips(_: float, state: np.ndarray) -> float:
+        """Return how fast the rim slides against the friction, and 1e-9 for the start of it."""
+        _, _, u_dot, phi_dot = state
+        return math.copysign(1.0, friction) * (u_dot - phi_dot) + 1e-9
+
+    grips.terminal = True  # ty: ignore[missing-attribute]
+    grips.direction = -1  # ty: ignore[missing-attribute]
+    state = [rolling.u[-1], rolling.phi[-1], rolling.u_dot[-1], rolling.phi_dot[-1]]
+    solution = solve_ivp(
+        rates, (began, began + 5), state, events=grips, dense_output=True, rtol=1e-10, atol=1e-12
+    )
+    assert len(solution.t_events[0]) == 1
+    return solution
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("phi_dot0", [-0.2, -0.3, -0.5])
 def test_contact_rolls_slips_and_grips_as_coulomb_says(phi_dot0: float) -> None:
-    """It rolls until |F| = mu N, and then slips, which SciPy integrates until the rim grips.
+    """The hoop rolls until |F| = mu N, and then slips until its rim grips.
 
-    In the end u and phi are some hundredths apart in the end, and N is never 0.
+    By then u and phi are some hundredths apart, and N was never 0.
     """
     skids = exact(SCENE, np.linspace(0, 5, 5001), math.pi, phi_dot0).rolls_until(MU)
-    start = exact(SCENE, [0.0, skids], math.pi, phi_dot0)
-    sign = math.copysign(1.0, float(start.forces.friction[-1]))
-
-    def slides(_: float, state: np.ndarray) -> list[float]:
-        u_ddot, phi_ddot, _ = accelerations(state[1], state[3], sign * MU)
-        return [state[2], state[3], u_ddot, phi_ddot]
-
-    def slips(_: float, state: np.ndarray) -> float:
-        """How fast the rim slides against the friction, less 1e-9 to leave the slip's start."""
-        return sign * (state[2] - state[3]) + 1e-9
-
-    slips.terminal = True  # ty: ignore[missing-attribute]
-    slips.direction = -1  # ty: ignore[missing-attribute]
-    state = [start.u[-1], start.phi[-1], start.u_dot[-1], start.phi_dot[-1]]
-    slip = solve_ivp(
-        slides, (skids, skids + 5), state, events=slips, dense_output=True, rtol=1e-10, atol=1e-12
-    )
-    assert len(slip.t_events[0]) == 1
+    before = exact(SCENE, [0.0, skids], math.pi, phi_dot0)
+    friction = math.copysign(MU, float(before.forces.friction[-1]))
+    slip = slide_until_it_grips(before, friction)
     run = simulate(
         SCENE, slip.t[-1], math.pi, phi_dot0, rolling="contact", timestep=5e-4, friction=MU
     )
+
     rolls = run.time <= skids
-    inside = ~rolls & (run.time <= slip.t[-1])
     rolling = exact(SCENE, run.time[rolls], math.pi, phi_dot0)
-    u, phi, _, phi_dot = slip.sol(run.time[inside])
     assert np.abs(run.u[rolls] - rolling.u).max() < SOFT
     assert np.abs(run.phi[rolls] - rolling.phi).max() < SOFT
-    assert np.abs(run.u[inside] - u).max() < SOFT
-    assert np.abs(run.phi[inside] - phi).max() < SOFT
+
+    slips = ~rolls & (run.time <= slip.t[-1])
+    u, phi, _, phi_dot = slip.sol(run.time[slips])
+    assert np.abs(run.u[slips] - u).max() < SOFT
+    assert np.abs(run.phi[slips] - phi).max() < SOFT
     assert abs(u[-1] - phi[-1]) > 20 * SOFT
-    normal = [accelerations(*state, MU)[2] for state in zip(phi, phi_dot, strict=True)]
+    normal = [sliding(*state, friction).normal for state in zip(phi, phi_dot, strict=True)]
     assert min(normal) > 0
 
 

@@ -1,4 +1,4 @@
-"""The paper's stories: their files, and what they show."""
+"""The paper's stories: their plots, films and text, as `mjbeer paper` writes them."""
 
 import math
 import os
@@ -31,16 +31,15 @@ def test_a_plot_is_drawn_and_small(name: str, tmp_path: pathlib.Path) -> None:
 def test_footnote_8_as_printed_is_another_motion() -> None:
     times = np.linspace(0, 3, 301)
     truth = exact(footnote_scene(), times, 0.0).phi
-    assert np.abs(footnote_8_as_printed(footnote_scene(), times, 0.0) - truth).max() > math.radians(
-        4
-    )
+    printed = footnote_8_as_printed(footnote_scene(), times, 0.0)
+    assert np.abs(printed - truth).max() > math.radians(4)
 
 
 @pytest.mark.parametrize(
-    ("words", "problem"), [([], None), (["--films"], None), (["--films"], "no OpenGL")]
+    ("options", "problem"), [([], None), (["--films"], None), (["--films"], "no OpenGL")]
 )
 def test_the_command(
-    words: list[str],
+    options: list[str],
     problem: str | None,
     tmp_path: pathlib.Path,
     monkeypatch: pytest.MonkeyPatch,
@@ -49,14 +48,14 @@ def test_the_command(
     """Films that cannot be drawn are named."""
     stubs.draw(monkeypatch)
     monkeypatch.setattr(opengl, "problem", lambda: problem)
-    assert main(["paper", *words, "--output", str(tmp_path)]) == 0
+    assert main(["paper", *options, "--output", str(tmp_path)]) == 0
     text = (tmp_path / "stories.md").read_text()
     err = capsys.readouterr().err
-    filmed = bool(words) and not problem
-    shown = {name for name in os.listdir(tmp_path) if not name.startswith(".")}
-    assert shown == {"letters.svg", "told.svg", "stories.md"} | ({"told.mp4"} if filmed else set())
-    for words_of_story in ("## told", "![told](told.svg)", "A stub's story."):
-        assert words_of_story in text
+    filmed = bool(options) and not problem
+    names = {name for name in os.listdir(tmp_path) if not name.startswith(".")}
+    assert names == {"letters.svg", "told.svg", "stories.md"} | ({"told.mp4"} if filmed else set())
+    for line in ("## told", "![told](told.svg)", "A stub's story."):
+        assert line in text
     assert ("[Film](told.mp4)" in text) == filmed
     missing = opengl.missing_films_message(["told.mp4"])
     assert (f"Films: {missing}\n" in text) == bool(problem)

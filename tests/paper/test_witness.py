@@ -1,4 +1,4 @@
-"""What MuJoCo says of a motion, however the can is made to roll; and ripples of loops."""
+"""The witness agrees with theory, whatever makes the can roll, and so do the ripples of loops."""
 
 import math
 
@@ -22,12 +22,13 @@ SCENES = {
 
 @pytest.mark.parametrize("name", SCENES)
 def test_it_agrees_with_theory(name: str) -> None:
-    """In accelerations, and to 1e-6 in the friction that makes a can roll."""
+    """The accelerations do, and to 1e-6 the friction that makes a can roll."""
     scene, rolling = SCENES[name]
     q = watch(scene, 1.2, 0.5, rolling=rolling, samples=11)
     u_ddot, phi_ddot = accelerations(scene, q.phi, q.phi_dot, q.u_dot)
     if name == "frozen, reduced":
-        u_ddot = 0 * u_ddot  # the reduced can turns on the spot
+        # The reduced model of a frozen can turns on the spot.
+        u_ddot = np.zeros_like(u_ddot)
     assert q.phi_ddot == pytest.approx(phi_ddot, abs=DRIFT * np.abs(phi_ddot).max())
     assert q.u_ddot == pytest.approx(u_ddot, abs=DRIFT * max(np.abs(u_ddot).max(), 1.0))
     across = q.b * (np.sin(q.phi) * phi_ddot + np.cos(q.phi) * q.phi_dot**2)
@@ -41,7 +42,7 @@ def test_it_agrees_with_theory(name: str) -> None:
 @pytest.mark.parametrize("can", [Can.massless(), Can.sheet_metal()])
 @pytest.mark.parametrize("start", [45.0, 120.0])
 def test_a_turn_is_that_of_exact_theory(can: Can, start: float) -> None:
-    """DOP853 takes 64 steps a turn, which near the separatrix leaves 2e-11 rad."""
+    """DOP853 takes 64 steps a turn; near the separatrix its error is 2e-11 rad."""
     scene = sliding(can=can)
     observed = loop(scene, start)
     turn = 2 * math.pi / observed.Omega

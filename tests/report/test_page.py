@@ -28,7 +28,7 @@ MISPRINTS = [row for row in paper.claims() if row.misprint]
 
 
 class Page(html.parser.HTMLParser):
-    """The elements of a page with their attributes; each must be closed."""
+    """A page as a list of its elements with their attributes; each element must be closed."""
 
     def __init__(self, text: str) -> None:
         super().__init__()
@@ -50,12 +50,12 @@ class Page(html.parser.HTMLParser):
         assert self.open.pop() == tag
 
     def values(self, attribute: str, *tags: str) -> list[str]:
-        """The values of an attribute."""
-        return [
-            str(of[attribute])
-            for tag, of in self.elements
-            if attribute in of and (tag in tags or not tags)
-        ]
+        """Return the values of an attribute, of all elements or of those with some tags."""
+        values = []
+        for tag, attributes in self.elements:
+            if attribute in attributes and (tag in tags or not tags):
+                values.append(str(attributes[attribute]))
+        return values
 
 
 @pytest.mark.parametrize("option", ["", "--table", "--json"])
@@ -156,7 +156,7 @@ def test_a_film_that_fails_leaves_the_old_page(
 
 @pytest.fixture(scope="module")
 def text() -> str:
-    """A page with a result for each misprint, whose errors are made up."""
+    """Return a page with a result for each misprint; the errors are made up."""
     results = [
         Result(
             group=row.equation,
@@ -183,22 +183,20 @@ def text() -> str:
 
 
 def test_nothing_comes_from_elsewhere_and_nothing_runs(text: str) -> None:
-    """Links that a reader may follow are the only addresses.
-
-    The policy forbids the rest, and all scripts.
-    """
-    read = Page(text)
-    taken = read.values("src") + read.values("poster") + read.values("href", "link")
-    assert all(address.startswith(("data:", "#")) for address in taken)
-    (policy,) = read.values("content", "meta")[:1]
+    """The only addresses are links for a reader; the page's policy forbids others, and scripts."""
+    shown = Page(text)
+    loaded = shown.values("src") + shown.values("poster") + shown.values("href", "link")
+    assert all(address.startswith(("data:", "#")) for address in loaded)
+    (policy,) = shown.values("content", "meta")[:1]
     assert "default-src 'none'" in policy
     assert not re.search(r"\bhttps?:|\*|script", policy)
-    names = read.values("id")
-    links = read.values("href", "a")
-    inside = {link.removeprefix("#") for link in links if link.startswith("#")}
+
+    names = shown.values("id")
+    links = shown.values("href", "a")
+    targets = {link.removeprefix("#") for link in links if link.startswith("#")}
     assert len(names) == len(set(names))
-    assert set(read.values("id", "section")) <= inside <= set(names)
-    assert all(read.values("alt", "img"))
+    assert set(shown.values("id", "section")) <= targets <= set(names)
+    assert all(shown.values("alt", "img"))
 
 
 def test_the_misprints_have_their_kinds_and_the_numbers_of_the_results(text: str) -> None:
@@ -222,19 +220,19 @@ def test_a_film_s_command_makes_the_same_motion(name: str) -> None:
     film = FILMS[name]
     assert isinstance(film, MotionFilm)
     given = parse(shlex.split(films.COMMANDS[name])[1:])
-    ours = film.trajectory()
-    theirs = trajectory_of(given)
+    filmed = film.trajectory()
+    commanded = trajectory_of(given)
     # The degrees of a command have seven digits.
-    assert ours.phi0 == pytest.approx(theirs.phi0, abs=1e-6)
-    assert ours.phi_dot0 == pytest.approx(theirs.phi_dot0, abs=1e-6)
-    assert ours.scene == theirs.scene
-    assert ours.rolling == theirs.rolling
-    assert ours.integrator == theirs.integrator
+    assert filmed.phi0 == pytest.approx(commanded.phi0, abs=1e-6)
+    assert filmed.phi_dot0 == pytest.approx(commanded.phi_dot0, abs=1e-6)
+    assert filmed.scene == commanded.scene
+    assert filmed.rolling == commanded.rolling
+    assert filmed.integrator == commanded.integrator
 
 
 @pytest.mark.parametrize("row", MISPRINTS, ids=lambda row: row.equation)
 def test_formulas_are_mathml_without_what_was_not_understood(row) -> None:
-    for latex in (row.misprint.printed, row.misprint.right):
+    for latex in (row.misprint.printed_latex, row.misprint.right_latex):
         shown = page.mathml(latex)
         assert shown.count("<math") >= 1
         assert "\\" not in re.sub("<[^>]*>", "", shown)

@@ -1,7 +1,6 @@
 """tolerance: the true error is below it at every sample, the estimate bounds it, and what cannot be
 met is an error."""
 
-import contextlib
 import math
 from collections.abc import Callable
 from dataclasses import replace
@@ -59,6 +58,19 @@ class Case(NamedTuple):
 def assert_kept(run: Run, tolerance: float) -> None:
     assert error(run) <= tolerance
     assert run.error_estimate <= tolerance
+
+
+def assert_kept_or_refused(case: Case, *, easily_kept: float) -> None:
+    """A run keeps to its tolerance unless it is refused, and to one that is easy to keep to it
+    does: what refused everything would be no better."""
+    try:
+        run = case.run()
+    except ToleranceError:
+        pass
+    else:
+        assert_kept(run, case.tolerance)
+    easy = case._replace(tolerance=easily_kept)
+    assert_kept(easy.run(), easily_kept)
 
 
 @settings(max_examples=100, deadline=None, derandomize=True)
@@ -124,19 +136,17 @@ def test_a_light_wheel_keeps_to_the_tolerance_or_is_refused(case: Case) -> None:
     """Its load passes the lowest point in a moment, and there two runs of Gauss-Jackson were 10 and
     5 times as far off as they should have been, and those of DOP853, with the nudge of any wheel,
     1.6 times."""
-    with contextlib.suppress(ToleranceError):
-        assert_kept(case.run(), case.tolerance)
+    assert_kept_or_refused(case, easily_kept=1000 * case.tolerance)
 
 
 def test_what_cannot_be_met_is_refused_and_says_how_far_it_got(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """More digits than a double has, a budget that is used up, and a model that is wrong by
-    itself."""
+    """More digits than a double has, a model that is wrong by itself, and a budget that is used
+    up."""
+    lost = r"is not reached: less than 1e-12 rad is lost in the rounding"
     for tolerance in (0.99e-12, 1e-30):
-        with pytest.raises(
-            ToleranceError, match=r"is not reached: less than 1e-12 rad is lost in the rounding"
-        ):
+        with pytest.raises(ToleranceError, match=lost):
             simulate(sliding(), 0.1, 0.1, tolerance=tolerance)
     with pytest.raises(
         ParameterError,
@@ -209,7 +219,9 @@ def test_cans_of_any_size_keep_to_the_tolerance(
     can = Can.sheet_metal(radius, 3.6 * radius, thickness=radius / 330)
     scene = make(can=can)
     slow = math.sqrt(radius / 9.81)
+
     run = simulate(scene, 30 * slow, 1.0, rolling=rolling, timestep=slow / 50, tolerance=1e-9)
+
     assert error(run) < 1e-9
 
 
@@ -373,8 +385,7 @@ def test_what_rounding_does_beside_a_separatrix_is_not_taken_back() -> None:
     with pytest.raises(ToleranceError):
         case.run()
     for tolerance in (5e-10, 5e-9):
-        with contextlib.suppress(ToleranceError):
-            assert_kept(case._replace(tolerance=tolerance).run(), tolerance)
+        assert_kept_or_refused(case._replace(tolerance=tolerance), easily_kept=5e-7)
 
 
 NEAR_ROUNDING = {
@@ -412,8 +423,7 @@ def test_rounding_that_makes_up_for_the_nudge_is_seen() -> None:
         tolerance=3.058050432508829e-12,
         samples=61,
     )
-    with contextlib.suppress(ToleranceError):
-        assert_kept(case.run(), case.tolerance)
+    assert_kept_or_refused(case, easily_kept=100 * case.tolerance)
 
 
 def test_a_tolerance_near_rounding_is_kept_where_the_damping_has_corners() -> None:

@@ -38,7 +38,7 @@ from mjbeer.studies.sweep_runs import (
     REFUSED,
     WELL,
 )
-from tests.support.processes import hear, interrupt, start
+from tests.support.processes import hear, highest, interrupt, start
 
 INCLINES = np.radians([3.0, 11.0, 20.0])
 FILLS = np.array([0.2, 0.5, 0.7, 0.95])
@@ -50,10 +50,6 @@ def sweep_of_sliding(
     return mjbeer.sweep(
         make, duration, 1.0, **({"tolerance": 1e-6, "incline": INCLINES, "fill": FILLS} | others)
     )
-
-
-def highest(trajectory: Trajectory) -> float:
-    return float(trajectory.phi.max())
 
 
 def missing(trajectory: Trajectory) -> float:
@@ -202,7 +198,7 @@ def test_units_and_the_call_are_attributes_and_a_run_ends_with_a_whole_timestep(
         0.5,
     )
     assert (swept.make, swept.timestep, swept.duration) == (
-        "mjbeer.theory.scene.frozen",
+        "mjbeer.theory.paper_scenes.frozen",
         3e-3,
         34 * 3e-3,
     )
@@ -283,23 +279,6 @@ def counted(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     return ran
 
 
-SWEEP_THAT_STOPS = """
-import sys, time
-from mjbeer import frozen, sweep
-from mjbeer.studies import sweep as sweeps, sweep_runs
-from tests.studies.test_sweep import RESUMED
-save = sweeps._save
-def save_and_stop(dataset, path):
-    save(dataset, path)
-    if (dataset["status"] != sweep_runs.NOT_YET).sum() >= int(sys.argv[2]):
-        print("saved", flush=True)
-        time.sleep(3600)
-sweeps._save = save_and_stop
-sweeps._SAVED_EVERY = 0.0
-sweep_runs._PIECE = 0.0
-sweep(frozen, **RESUMED, output=sys.argv[1])
-"""
-"""It stops as soon as it has saved so many scenes, of which each is a piece of work."""
 RESUMED: dict[str, Any] = {
     "duration": 1.0,
     "phi0": 1.0,
@@ -310,6 +289,22 @@ RESUMED: dict[str, Any] = {
     "fill": [k / 12 for k in range(1, 12)],
 }
 """A sweep of 22 scenes."""
+SWEEP_THAT_STOPS = f"""
+import sys, time
+from mjbeer import frozen, sweep
+from mjbeer.studies import sweep as sweeps, sweep_runs
+save = sweeps._save
+def save_and_stop(dataset, path):
+    save(dataset, path)
+    if (dataset["status"] != sweep_runs.NOT_YET).sum() >= int(sys.argv[2]):
+        print("saved", flush=True)
+        time.sleep(3600)
+sweeps._save = save_and_stop
+sweeps._SAVED_EVERY = 0.0
+sweep_runs._PIECE = 0.0
+sweep(frozen, **{RESUMED!r}, output=sys.argv[1])
+"""
+"""It stops as soon as it has saved so many scenes, of which each is a piece of work."""
 
 
 def simulated(path: pathlib.Path) -> int:

@@ -13,7 +13,10 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Generator, Mapping, Sequence
-from typing import Any, TextIO
+from typing import TYPE_CHECKING, Any, NamedTuple, TextIO
+
+if TYPE_CHECKING:
+    from mjbeer import Trajectory
 
 PATIENCE = 600.0
 """Time after which a process is taken to hang [s]: a guard, which no machine is slow enough to
@@ -96,6 +99,11 @@ def where() -> dict[str, Any]:
     return {"process": os.getpid()}
 
 
+def highest(trajectory: "Trajectory") -> float:
+    """Return the largest phi of a motion [rad], as a quantity of a sweep."""
+    return float(trajectory.phi.max())
+
+
 def work_and_sleep() -> dict[str, Any]:
     """Say so, and work for longer than any test."""
     print("at work", flush=True)
@@ -111,13 +119,30 @@ def hang_in_a_program() -> None:
     subprocess.run(["sh", "-c", "trap '' INT TERM; echo at work; exec sleep 3600"], check=True)
 
 
-def draw_and_sleep(path: pathlib.Path) -> None:
-    """Begin a plot that takes longer than any test, and say so."""
-    from mjbeer.output import files
+def sleep(*_: object) -> None:
+    """Work for longer than any test, and say nothing."""
+    time.sleep(3600)
 
-    with files.atomic_write(path.with_name(f"{path.name}.svg")):
-        print("drawing", flush=True)
-        time.sleep(3600)
+
+def two_that_sleep(_: object) -> None:
+    """Run two jobs in processes that work for longer than any test, and say so."""
+    from mjbeer.output.jobs import Job, run_jobs
+
+    run_jobs([Job("one", work_and_sleep), Job("other", work_and_sleep)], None)
+
+
+class EndlessPlot(NamedTuple):
+    """A plot that takes longer than any test to draw."""
+
+    path: pathlib.Path
+
+    def write(self) -> None:
+        """Begin the plot, and say so."""
+        from mjbeer.output import files
+
+        with files.atomic_write(self.path.with_name(f"{self.path.name}.svg")):
+            print("drawing", flush=True)
+            time.sleep(3600)
 
 
 def fall() -> dict[str, Any]:

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from mjbeer import Can, Load, Scene, exact, frozen, hoop, pendulum, sliding
 from mjbeer.model.joints import to_coordinates
+from mjbeer.model.setting import MUJOCO_INTEGRATORS
 from mjbeer.simulation.run import Run
 from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.trajectory import largest_error
@@ -23,6 +24,10 @@ SCENES = {
 }
 MASSIVE = {name: scene for name, scene in SCENES.items() if name != "sliding"}
 """Those that MuJoCo can roll by a constraint."""
+ARRAYS = ("time", "u", "phi", "u_dot", "phi_dot", "roll", "roll_dot", "lift", "lift_dot", "energy")
+"""What a run has an array of, with a number for each sample."""
+ANY_ROLLING_INTEGRATORS = (*MUJOCO_INTEGRATORS, "DOP853")
+"""The integrators that step a can however it rolls."""
 
 
 @st.composite

@@ -1,7 +1,7 @@
 """Stand-ins for what takes long: made-up rows to validate, and videos that are not drawn."""
 
 import pathlib
-from functools import partial
+from functools import cache, partial
 
 import pytest
 
@@ -29,6 +29,26 @@ def validate(monkeypatch: pytest.MonkeyPatch, **errors: float) -> None:
     monkeypatch.setattr(paper, "claims", list)
 
 
+@cache
+def _empty_chart() -> plots.Picture:
+    """A plot of nothing, which is drawn once a process."""
+    picture = plots.Picture("empty")
+    with plots.chart(picture, title="A plot & a title", subtitle="of a stub"):
+        pass
+    return picture
+
+
+def plot(path: pathlib.Path | plots.Picture) -> None:
+    """Write a plot of nothing, or make a picture one."""
+    empty = _empty_chart()
+    if isinstance(path, plots.Picture):
+        path.title = empty.title
+        path.subtitle = empty.subtitle
+        path.svg = empty.svg
+    else:
+        files.write(path.with_name(f"{path.name}.svg"), empty.svg)
+
+
 def draw(monkeypatch: pytest.MonkeyPatch, fail_at: str = "") -> list[video.FilmJob]:
     """Make videos text files, and the one of a name fail; the films that were ordered so far.
 
@@ -43,10 +63,6 @@ def draw(monkeypatch: pytest.MonkeyPatch, fail_at: str = "") -> list[video.FilmJ
         files.write(order.path, f"film {order.path.stem}")
         calls.append(order)
         return b"still"
-
-    def plot(path: pathlib.Path | plots.Picture) -> None:
-        with plots.chart(path, title="A plot & a title", subtitle="of a stub"):
-            pass
 
     def few(folder: pathlib.Path) -> list[video.PlotJob]:
         names = [f"error-{case}" for case in Benchmark.load(SHIPPED).cases]

@@ -79,16 +79,35 @@ def letters(scene: Scene) -> dict[str, Any]:
 
 def inertia(form: dict[str, Any], phi: Any) -> Any:
     """J at an angle [kg m^2]."""
-    return form["base"] + form["chord"] * mp.sin(phi / 2) ** 2 + form["swing"] * mp.sin(phi) ** 2
+    return _inertia(form, phi, mp.sin(phi))
+
+
+def height(form: dict[str, Any], phi: Any) -> Any:
+    """V at an angle [J]."""
+    return _height(form, phi, *mp.cos_sin(phi))
 
 
 def fall(form: dict[str, Any], begin: Any, end: Any) -> Any:
     """V(begin) - V(end) [J], as the plain difference."""
+    return height(form, begin) - height(form, end)
 
-    def height(phi: Any) -> Any:
-        return form["sine"] * mp.sin(phi) - form["cosine"] * mp.cos(phi) - form["slope"] * phi
 
-    return height(begin) - height(end)
+def slowness(form: dict[str, Any], energy: Any, phi: Any) -> Any:
+    """dt/dphi [s/rad] at an angle of a motion with an energy [J], sqrt(J/(2 (E - V)))."""
+    cos, sin = mp.cos_sin(phi)
+    kinetic = energy - _height(form, phi, cos, sin)
+    return mp.sqrt(_inertia(form, phi, sin) / (2 * kinetic))
+
+
+def _inertia(form: dict[str, Any], phi: Any, sin: Any) -> Any:
+    inertia = form["base"] + form["swing"] * sin**2
+    if form["chord"]:
+        inertia += form["chord"] * mp.sin(phi / 2) ** 2
+    return inertia
+
+
+def _height(form: dict[str, Any], phi: Any, cos: Any, sin: Any) -> Any:
+    return form["sine"] * sin - form["cosine"] * cos - form["slope"] * phi
 
 
 def well(form: dict[str, Any]) -> tuple[Any, Any, Any]:

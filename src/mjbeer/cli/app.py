@@ -25,7 +25,7 @@ from mjbeer.output import terminal
 from mjbeer.output.terminal import say
 
 _DESCRIPTION = """The rolling half-full beer can as a MuJoCo model that can be trusted.
-`mjbeer COMMAND --help` shows the options of a command and the scenes,
+`mjbeer COMMAND --help` shows the scenes or the options of a command,
 `mjbeer --version` the version."""
 COMMANDS: dict[str, Callable[[Namespace], int | None]] = {
     "simulate": motions.simulate,
@@ -40,7 +40,7 @@ COMMANDS: dict[str, Callable[[Namespace], int | None]] = {
     "paper": studies.paper,
     "report": studies.report,
 }
-"""What runs each command. The docstrings are the help; one may return an exit status."""
+"""The function that runs each command: its docstring is the help, and it may return a status."""
 SCENES_OF: dict[str, dict[str, Callable[..., Any]]] = {
     "simulate": SCENES,
     "fit": SCENES,
@@ -49,7 +49,7 @@ SCENES_OF: dict[str, dict[str, Callable[..., Any]]] = {
     "view": SCENES | STANDING,
     "export": SCENES | STANDING,
 }
-"""The scenes of which one must follow a command."""
+"""The scenes that a command takes; one of them must follow it."""
 
 
 class Parser(argparse.ArgumentParser):
@@ -83,7 +83,7 @@ class Parser(argparse.ArgumentParser):
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command that `arguments` ask for, by default those of the process.
+    """Run the command of a command line, by default that of the process.
 
     Return the exit status: 0, 1 if a check failed, 2 on an error, or 128 plus the number of the
     signal that interrupted the command.
@@ -99,26 +99,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         with terminal.printing():
             given = parse(words)
-        # MuJoCo loads the OpenGL that MUJOCO_GL names at once, and fails where it cannot.
-        asked_for = os.environ.get("MUJOCO_GL", "")
-        os.environ["MUJOCO_GL"] = "disable"
-        import mujoco  # noqa: F401
-
-        os.environ["MUJOCO_GL"] = asked_for
+        _import_mujoco()
         with warnings.catch_warnings():
-            # The commands say it in their own words.
-            warnings.simplefilter("ignore", UntrustedWarning)
-            # Angles are in degrees here.
-            warnings.simplefilter("ignore", AngleWarning)
-            # A study goes where a liquid is no lump on purpose, and its documents say so.
-            of_scene = given.command in SCENES_OF
-            warnings.simplefilter("always" if of_scene else "ignore", LiquidWarning)
-            cast("Any", warnings).showwarning = _show_warning
+            _choose_warnings(given.command)
             return COMMANDS[given.command](given) or 0
-    except (MjbeerError, OSError) as error:  # OSError: a limit, such as too many processes
+    # The system raises an OSError at a limit of its own, such as too many processes.
+    except (MjbeerError, OSError) as error:
         # A note names the job that failed.
-        words = [str(error), *getattr(error, "__notes__", ())]
-        say(f"mjbeer: {', '.join(words)}", "red")
+        notes = getattr(error, "__notes__", ())
+        message = ", ".join([str(error), *notes])
+        say(f"mjbeer: {message}", "red")
         return 2
     except KeyboardInterrupt as error:
         say("mjbeer: interrupted; what was written is whole", "red")
@@ -126,11 +116,35 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 128 + signum
 
 
+def _import_mujoco() -> None:
+    """Import MuJoCo without OpenGL.
+
+    When it is imported MuJoCo loads the OpenGL that MUJOCO_GL names, and fails if it cannot. Only
+    drawing needs OpenGL, and `drawing.opengl` then makes a context of its own.
+    """
+    asked_for = os.environ.get("MUJOCO_GL", "")
+    os.environ["MUJOCO_GL"] = "disable"
+    import mujoco  # noqa: F401
+
+    os.environ["MUJOCO_GL"] = asked_for
+
+
+def _choose_warnings(command: str) -> None:
+    """Let Python show the warnings that a command does not tell in its own words, as notes."""
+    warnings.simplefilter("ignore", UntrustedWarning)
+    # This one is about degrees that were taken for radians, and here angles are in degrees.
+    warnings.simplefilter("ignore", AngleWarning)
+    # A study simulates liquids that are no lump on purpose, and its documents say so.
+    takes_scene = command in SCENES_OF
+    warnings.simplefilter("always" if takes_scene else "ignore", LiquidWarning)
+    cast("Any", warnings).showwarning = _show_warning
+
+
 def parse(words: Sequence[str]) -> Namespace:
-    """Return the options that a command line asks for, with the `command` that takes them.
+    """Return the values of a command line's options, and the `command` that takes them.
 
     Raises:
-      ParameterError: if the words are not understood.
+      ParameterError: if a word is not understood, or one is missing.
       SystemExit: after --help and --version.
     """
     top = Parser(description=_DESCRIPTION, prog="mjbeer")
@@ -140,11 +154,12 @@ def parse(words: Sequence[str]) -> Namespace:
         parser = parsers.add_parser(name, help=_first_sentence(run), description=run.__doc__)
         if name not in SCENES_OF:
             parser.add_options(OPTIONS[name])
-        elif (
-            name in words
-        ):  # only the command that is meant gets its scenes' options, which are many
+        elif name in words:
+            # A command that is not among the words can do without the options of its scenes.
             _add_scenes(parser, name)
     given, others = top.parse_known_args(words)
+    if given.command == "fit" and given.file is None:
+        raise ParameterError("the following arguments are required: FILE; see `mjbeer fit --help`")
     if others:
         place = f"mjbeer {given.command} {getattr(given, 'scene', '')}".rstrip()
         raise ParameterError(f"{others[0]} is not understood here; see `{place} --help`")
@@ -153,19 +168,25 @@ def parse(words: Sequence[str]) -> Namespace:
 
 def _add_scenes(parser: Parser, command: str) -> None:
     """Add the scenes that may follow a command, with their options."""
+    before_scene = parser.prog
     if command == "fit":
-        parser.add_argument(
-            "file", metavar="FILE", help="table of the track, as Tracker or phyphox export it"
-        )
-    below = parser.add_subparsers(title="scenes", dest="scene", metavar="SCENE", required=True)
+        what = "table of the track, as Tracker or phyphox export it"
+        # If it were not optional here, "fit liquid --help" would take "liquid" for the file.
+        parser.add_argument("file", metavar="FILE", nargs="?", help=what)
+        parser.usage = f"{parser.prog} [-h] FILE SCENE ..."
+        before_scene += " FILE"
+    parsers = parser.add_subparsers(
+        title="scenes", dest="scene", metavar="SCENE", required=True, prog=before_scene
+    )
     for scene, make in SCENES_OF[command].items():
-        what = _first_sentence(make)
-        of_scene = below.add_parser(scene, usage="%(prog)s [options]", help=what)
-        of_scene.description = f"{COMMANDS[command].__doc__} The scene: {what}."
-        of_scene.add_options(scene_options(scene, command))
+        about = _first_sentence(make)
+        scene_parser = parsers.add_parser(scene, usage="%(prog)s [options]", help=about)
+        scene_parser.description = f"{COMMANDS[command].__doc__} The scene: {about}."
+        scene_parser.add_options(scene_options(scene, command))
 
 
 def _first_sentence(function: Callable[..., Any]) -> str:
+    """Return the first sentence of a docstring without its stop; of a scene, what the scene is."""
     sentence, *_ = re.split(r"\.(?:\n|$)", str(function.__doc__))
     return sentence.removeprefix("Return ").removeprefix("the scene of ")
 
@@ -175,4 +196,5 @@ def _show_warning(message: Warning | str, *_: Any) -> None:
 
 
 def _interrupt(signum: int, _: FrameType | None) -> NoReturn:
-    raise KeyboardInterrupt(signum)  # so that files are cleaned up as after Ctrl-C
+    # Files are then cleaned up as after Ctrl-C.
+    raise KeyboardInterrupt(signum)

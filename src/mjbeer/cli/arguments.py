@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from mjbeer import require
 from mjbeer.drawing.camera import CAMERAS
 from mjbeer.exceptions import ParameterError
 from mjbeer.model.setting import LOOKS, MJBEER_INTEGRATORS, MUJOCO_INTEGRATORS, ROLLINGS, Setting
@@ -22,7 +23,8 @@ from mjbeer.output.terminal import say
 from mjbeer.studies.benchmark.points import CASES
 from mjbeer.theory.can import LENGTH, RADIUS, Can
 from mjbeer.theory.liquid import NAMES, liquid, liquid_in
-from mjbeer.theory.scene import DURATION, Scene, frozen, hoop, pendulum, sliding
+from mjbeer.theory.paper_scenes import frozen, hoop, pendulum, sliding
+from mjbeer.theory.scene import DURATION, Scene
 from mjbeer.theory.standing import standing
 
 SCENES: dict[str, Callable[..., Scene]] = {
@@ -44,50 +46,51 @@ _MEANINGS = {
     "radius": "radius of the can [m]",
     "length": "length of the can [m]",
     "liquid": "the liquid, at 20 degrees Celsius",
-    "density": "density of beer [kg/m^3], or of a liquid if it is not its own",
+    "density": "density of the beer, or of the liquid if it is not its own [kg/m^3]",
     "viscosity": "kinematic viscosity [m^2/s] if it is not the liquid's own; water has 1e-6",
     "gravity": "acceleration of gravity [m/s^2]",
-    "damping": "torque between can and beer over the rate at which the can turns faster "
+    "damping": "torque between can and beer, divided by the rate at which the can turns faster "
     "than the beer [N m s]",
-    "drag": "force of the air against the motion over the square of the speed [kg/m]",
+    "drag": "force of the air against the motion, divided by the square of the speed [kg/m]",
     "wheel_mass": "mass of the wheel [kg]",
     "hoop_mass": "mass of the hoop [kg]",
     "load_mass": "mass of the load: a pendulum's bob, or a weight on a rim [kg]",
     "offset": "length of the pendulum, from the axle to the bob [m]",
     "modes": "modes of the slosh that move, from 0 (solid) to 5",
-    "damping_ratio": "damping of each mode over the critical one; "
+    "damping_ratio": "damping of each mode, divided by the critical one; "
     "by default what the viscosity gives",
 }
-"""What the options of scenes mean, in the order of the help."""
+"""What each option of a scene means, in the order of the help."""
 
 
 def angle(text: str) -> float:
     """Read an angle in degrees, or a rate in degrees/s, as one in radians."""
-    if not math.isfinite(degrees := float(text)):
+    degrees = float(text)
+    if not math.isfinite(degrees):
         raise ArgumentTypeError(f"it must be a finite number [degrees], got {text}")
     return math.radians(degrees)
 
 
 def numbers(text: str) -> float | np.ndarray:
-    """Read a number as "3", or several as "1,2,5" or "1:20:39", 39 numbers from 1 to 20."""
+    """Read one number, as "3", or several: "1,2,5", or "1:20:39" for 39 numbers from 1 to 20."""
     try:
         if ":" in text:
             first, last, count = text.split(":")
-            read = np.linspace(float(first), float(last), int(count))
+            values = np.linspace(float(first), float(last), int(count))
         else:
-            read = np.array(text.split(","), float)
-        if not (read.size and np.isfinite(read).all()):
+            values = np.array(text.split(","), float)
+        if not (values.size and np.isfinite(values).all()):
             raise ValueError
     except ValueError:
-        allowed = (
-            "no number, no list as 1,2,5, and no range as 1:20:39, which is 39 numbers from 1 to 20"
-        )
-        raise ArgumentTypeError(f"{text!r} is {allowed}") from None
-    return read if read.size > 1 else float(read[0])
+        raise ArgumentTypeError(
+            "it must be a number, a list such as 1,2,5, or a range such as 1:20:39 "
+            f"(39 numbers from 1 to 20), got {text!r}"
+        ) from None
+    return values if values.size > 1 else float(values[0])
 
 
 def angles(text: str) -> float | np.ndarray:
-    """Read `numbers` in degrees as ones in radians."""
+    """Read one angle or several in degrees, written as for `numbers`, as radians."""
     return np.radians(numbers(text))
 
 
@@ -98,7 +101,9 @@ def known(text: str) -> tuple[str, tuple[float, float]]:
         unit = math.radians(1) if name in ("incline", "phi0", "turned") else 1.0
         return name, (unit * float(value), unit * float(error))
     except ValueError:
-        raise ArgumentTypeError(f"{text!r} is no value with its error, as fill=0.5±0.005") from None
+        raise ArgumentTypeError(
+            f"it must be a value with its error, such as fill=0.5±0.005, got {text!r}"
+        ) from None
 
 
 def mark(text: str) -> tuple[float, float, float]:
@@ -107,7 +112,9 @@ def mark(text: str) -> tuple[float, float, float]:
         x, y, place = re.split("[,=]", text)
         return float(x), float(y), float(place)
     except ValueError:
-        raise ArgumentTypeError(f"{text!r} is no mark x,y=metres, as 655,398=1") from None
+        raise ArgumentTypeError(
+            f"it must be a mark, x and y [pixels] and its place [m], such as 655,398=1, got {text!r}"
+        ) from None
 
 
 class Option(NamedTuple):
@@ -117,13 +124,13 @@ class Option(NamedTuple):
     help: str
     default: Any = None
     read: Any = float
-    """A function that reads a value, also the default if that is a text."""
+    """A function that reads a value from its text, and the default if that is a text."""
     choices: tuple[str, ...] = ()
-    """All values that are allowed, if not those that `read` takes."""
+    """The values that are allowed, if they are a few texts; `read` is not used then."""
     several: bool = False
     """Whether it takes several values."""
     flag: bool = False
-    """Whether it takes none, and is true where it is given."""
+    """Whether it takes no value, and is true where it is given."""
     synonyms: tuple[str, ...] = ()
     """Other names of the option."""
 
@@ -283,13 +290,13 @@ OPTIONS = {
 }
 """The options of each command; those of a scene come before them."""
 _ROLLS = ("--rolling", "--friction", "--tolerance", "--camera")
-"""Options that a can that stands does not have: they are those of a can that rolls."""
+"""Options of a can that rolls, which a can that stands does not have."""
 
 
 def scene_options(name: str, command: str) -> list[Option]:
     """Return the options of a scene and of its start, and then those of a command.
 
-    A sweep takes several numbers for each.
+    In a sweep each number may be several.
     """
     number = numbers if command == "sweep" else float
     degrees = angles if command == "sweep" else angle
@@ -340,7 +347,7 @@ def _defaults(name: str) -> dict[str, Any]:
 
 
 def steps(given: Namespace) -> dict[str, Any]:
-    """Return how a scene is modelled and stepped, where that is given."""
+    """Return the options that say how a scene is modelled and stepped, if they are given."""
     names = ("rolling", "integrator", "timestep", "tolerance", "friction")
     return {
         name: value for name, value in vars(given).items() if name in names and value is not None
@@ -350,7 +357,7 @@ def steps(given: Namespace) -> dict[str, Any]:
 def start(given: Namespace) -> dict[str, Any]:
     """Return the initial phi0 [rad] and phi_dot0 [rad/s].
 
-    If phi0 looks like radians, as 3.14159, a note says so.
+    A note is printed if phi0 looks like radians, as 3.14159 does.
     """
     if given.scene == "standing":
         return {}
@@ -365,15 +372,22 @@ def start(given: Namespace) -> dict[str, Any]:
 
 
 def scene_arguments(given: Namespace) -> dict[str, Any]:
-    """Return the options of the scene, as `make` takes them; the incline is checked in degrees."""
-    for degrees in np.degrees(getattr(given, "incline", [])).ravel():
-        if not abs(degrees) < 90:
-            raise ParameterError(f"incline must be between -90 and 90 [degrees], got {degrees:.9g}")
+    """Return the options of the scene, as `make` takes them.
+
+    Raises:
+      ParameterError: if an incline is not allowed; the message has it in degrees.
+    """
+    for incline in np.ravel(getattr(given, "incline", [])):
+        lowest, highest = require.INCLINE
+        if not lowest <= incline <= highest:
+            allowed = f"between {math.degrees(lowest):g} and {math.degrees(highest):g} [degrees]"
+            came = math.degrees(incline)
+            raise ParameterError(f"incline must be {allowed}, got {came:.9g}")
     return {name: getattr(given, name) for name in _MEANINGS if hasattr(given, name)}
 
 
 def make(function: Callable[..., Any], **options: Any) -> Any:
-    """Call a function that makes a scene with the options of the command line."""
+    """Return the scene that a function makes from options of the command line."""
     if "can" in options:
         can = _CANS[options["can"]](options.pop("radius"), options.pop("length"))
         options["can"] = _with_mass(can, options.pop("can_mass", None))
@@ -391,7 +405,7 @@ def _with_mass(can: Can, mass: float | None) -> Can:
 
 
 def scene(given: Namespace) -> Any:
-    """Return the scene or the standing can that was asked for; a liquid says what it assumes."""
+    """Return the scene or the standing can of a command line; a liquid prints what it assumes."""
     options = scene_arguments(given)
     if given.scene == "liquid":
         without_drag = {name: value for name, value in options.items() if name != "drag"}

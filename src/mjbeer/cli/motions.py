@@ -4,13 +4,14 @@ import math
 import os
 import tempfile
 import warnings
-from argparse import Namespace
+from argparse import ArgumentTypeError, Namespace
 from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from mjbeer import require
 from mjbeer.checks.as_json import json_values, to_json
 from mjbeer.cli.arguments import angle, scene, start, steps
 from mjbeer.drawing.words import damping_in_words
@@ -26,17 +27,17 @@ if TYPE_CHECKING:
 
 
 class KeyFigure(NamedTuple):
-    """A quantity of a run that the command tells."""
+    """A quantity of a run that `mjbeer simulate` prints."""
 
     name: str
     value: Any
-    """As JSON has it."""
+    """The value in JSON."""
     unit: str = ""
     shown: str = "{}"
-    """How a text shows it: as a format, or in words that need no value."""
+    """How the text shows the value: a format for it, or words that stand in its place."""
 
     def line(self) -> str | None:
-        """Return the line of a text, or None if there is no number to show."""
+        """Return the line of the text, or None if there is no number to show."""
         if "{" not in self.shown:
             return f"{self.name:<31} {self.shown}"
         if json_values(self.value) is None:
@@ -56,8 +57,8 @@ class Summary:
         self.trajectory = trajectory
         self.friction = friction
         self.rolls_until = math.inf
-        """[s]."""
-        # Where rolling needs no more than there is, the run that looks for that time is saved.
+        """Until when the can would roll without slipping [s]."""
+        # Looking for that time takes a second run, which a can that never slips does not need.
         if trajectory.record.needed_friction > friction:
             self.rolls_until = trajectory.rolls_until(friction)
         self.notes: list[str] = []
@@ -70,7 +71,7 @@ class Summary:
 
     @property
     def key_figures(self) -> list[KeyFigure]:
-        """The figures in the order of the text."""
+        """The key figures in the order in which they are printed."""
         run = self.trajectory
         radius = run.scene.can.radius
         slip = run.slip / radius
@@ -108,7 +109,7 @@ class Summary:
         return KeyFigure("can roll without slipping until", until, "s", shown)
 
     def text(self) -> str:
-        """Return the figures as lines of text, without those that have no number to show."""
+        """Return the figures as lines of text; one that has no number to show is left out."""
         lines = [figure.line() for figure in self.key_figures]
         return "\n".join(line for line in lines if line) + "\n"
 
@@ -124,7 +125,7 @@ def _yes_or_no(name: str, value: bool) -> KeyFigure:
 
 
 def _energy_drift(run: "Run") -> KeyFigure:
-    """Return the drift of the energy, which has no number where damping or drag takes energy."""
+    """Return the drift of the energy; it has no value if damping or drag takes energy."""
     scale = "the swing's largest kinetic energy"
     if not run.scene.load.offset:
         scale = "the largest kinetic energy"
@@ -144,7 +145,7 @@ def _needed_friction(run: "Run") -> KeyFigure:
 
 
 def _steady_rolling(scene: Scene) -> list[KeyFigure]:
-    """Return what takes energy from a motion, and the steady rolling to which it may come."""
+    """Return the damping and the drag of a scene that has any, and how it may come to roll."""
     if not scene.dissipates:
         return []
     figures = [
@@ -156,7 +157,8 @@ def _steady_rolling(scene: Scene) -> list[KeyFigure]:
         tilt = math.degrees(scene.terminal_tilt())
         roots = scene.modes().tolist()
     except MjbeerError as error:
-        reason, _, _ = str(error).partition(":")  # its first clause says what there is not
+        # The first clause says what does not exist.
+        reason, _, _ = str(error).partition(":")
         return [*figures, KeyFigure("terminal speed", None, "m/s", reason)]
     pairs = [[root.real, root.imag] for root in roots]
     words = [f"{root:.4g}" if root.imag else f"{root.real:.4g}" for root in roots]
@@ -170,11 +172,12 @@ def _steady_rolling(scene: Scene) -> list[KeyFigure]:
 
 
 def trajectory_of(given: Namespace) -> "Run":
-    """Simulate the scene that was asked for."""
+    """Simulate the scene of a command line."""
     from mjbeer.simulation.simulate import simulate
 
     thing = scene(given)
-    with warnings.catch_warnings(action="ignore", category=LiquidWarning):  # `_warn` says it
+    # `_warn` tells what the run warns of.
+    with warnings.catch_warnings(action="ignore", category=LiquidWarning):
         return simulate(thing, given.duration, **start(given), **steps(given))
 
 
@@ -210,14 +213,17 @@ def render(given: Namespace) -> None:
 
     A can that stands is held, and its liquid is let go with a surface 0.1 R high at the wall.
     """
+    from mjbeer.drawing import video
+
+    # A mistake is an error before the run, which may take long.
+    video.check_target(given.output, given.width, given.height)
+    require.positive("speed", given.speed)
     if given.scene == "standing":
         _render_standing(given)
         return
-    from mjbeer.drawing.video import render
-
     trajectory = trajectory_of(given)
     _warn(Summary(trajectory, given.friction))
-    render(
+    video.render(
         trajectory,
         given.output,
         given.width,
@@ -263,12 +269,12 @@ def view(given: Namespace) -> None:
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, model.key(START).id)
     glfw.ERROR_REPORTING = "ignore"
-    if not glfw.init():  # MuJoCo would end the process
+    # Where GLFW fails, MuJoCo would end the process.
+    if not glfw.init():
         reason: Any = glfw.get_error()[1]
         raise RenderingError(
             f"no window can be opened: {reason.decode()}; `mjbeer render` draws a video without a "
-            f"window, and "
-            "`mjbeer export` writes a file for MuJoCo's viewer elsewhere"
+            "window, and `mjbeer export` writes a file for MuJoCo's viewer elsewhere"
         )
     os.environ.setdefault("LP_NUM_THREADS", "0")  # see `opengl.context`
     mujoco.viewer.launch(model, data, show_left_ui=False, show_right_ui=False)
@@ -312,34 +318,45 @@ def fit(given: Namespace) -> None:
         raise ParameterError(
             f"the file's name must end in .svg or .png or .mp4, got {str(output)!r}"
         )
-    try:
-        phi0 = given.phi0 if given.phi0 in ("level", "free") else angle(given.phi0)
-    except ValueError:
-        raise ParameterError(
-            f"phi0 must be level, free, or a number [degrees], got {given.phi0!r}"
-        ) from None
-    columns = dict(column.partition("=")[::2] for column in given.columns)
+    phi0 = _phi0_of_fit(given.phi0)
+    columns = {}
+    for column in given.columns:
+        quantity, _, heading = column.partition("=")
+        columns[quantity] = heading
     track = read_track(given.file, columns, given.rate, given.scale, given.marks or None)
-    with warnings.catch_warnings(action="ignore", category=LiquidWarning):  # of a guess
+    # A warning about a guess says nothing about the fit.
+    with warnings.catch_warnings(action="ignore", category=LiquidWarning):
         guess = scene(given)
     with files.atomic_write(output) if output else nullcontext() as temporary:
-        found = fit(track, guess, given.free or ["incline"], dict(given.known), phi0, given.bend)
+        result = fit(track, guess, given.free or ["incline"], dict(given.known), phi0, given.bend)
         if given.json:
-            told = {
-                "values": found.values,
-                "errors": found.errors,
-                "noise": found.noise,
-                "warnings": found.warnings,
+            content = {
+                "values": result.values,
+                "errors": result.errors,
+                "noise": result.noise,
+                "warnings": result.warnings,
             }
-            terminal.write(to_json(told, indent=2))
+            terminal.write(to_json(content, indent=2))
         else:
-            terminal.write("\n".join([found.title, *found.lines()]) + "\n")
-            for warning in found.warnings:
+            terminal.write("\n".join([result.title, *result.lines()]) + "\n")
+            for warning in result.warnings:
                 say(f"note: {warning}", "yellow")
         if temporary and temporary.suffix == ".mp4":
-            found.video(temporary)
+            result.video(temporary)
         elif temporary:
-            figure: Any = found.plot()[0].figure
+            figure: Any = result.plot()[0].figure
             figure.savefig(temporary, facecolor="white", dpi=150)
     if output:
         say(f"wrote {output}")
+
+
+def _phi0_of_fit(text: str) -> str | float:
+    """Return what a fit takes as phi0: "level", "free", or an angle [rad]."""
+    if text in ("level", "free"):
+        return text
+    try:
+        return angle(text)
+    except (ValueError, ArgumentTypeError):
+        raise ParameterError(
+            f"phi0 must be level, free, or a number [degrees], got {text!r}"
+        ) from None

@@ -1,11 +1,11 @@
-"""The commands of many motions: sweep, validate, benchmark, stability, paper and report."""
+"""The commands that run many motions: sweep, validate, benchmark, stability, paper and report."""
 
-import contextlib
 import functools
 import math
+import re
 from argparse import Namespace
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
@@ -24,7 +24,6 @@ _ENDINGS = (".png", ".svg", ".csv", ".nc")
 def sweep(given: Namespace) -> None:
     """Simulate a scene for several values of its options, as 1,2,5 or 1:20:39 (39 from 1 to 20)."""
     from mjbeer.studies.sweep import sweep
-    from mjbeer.studies.sweep_runs import STATUSES, WELL
 
     if given.output.suffix not in _ENDINGS:
         endings = " or ".join(_ENDINGS)
@@ -38,35 +37,26 @@ def sweep(given: Namespace) -> None:
         )
     if given.tolerance is None and given.integrator is None:
         given.tolerance = 1e-6
-    maker = functools.partial(make, SCENES[given.scene])
-    named = cast("Any", maker)
-    # By this name the sweep's file says what made its scenes.
-    named.__module__ = "mjbeer"
-    named.__qualname__ = given.scene
-    resumed = given.output if given.output.suffix == ".nc" else None
-    with (
-        files.atomic_write(given.output) if resumed is None else contextlib.nullcontext()
-    ) as temporary:
-        options |= {"quantity": given.quantity, "output": resumed, **steps(given)}
-        result = sweep(maker, given.duration, **options)
-        if temporary and given.output.suffix in _PLOTS:
-            _plot(result, given.quantity, temporary)
-        elif temporary:
-            table = result.to_dataframe()
-            table.to_csv(temporary, float_format="%.17g", index=bool(result.dims))
-    for line in result.attrs["failed"].splitlines():
-        say(f"failed: {line}", "yellow")  # one of each kind
+    make_scene: Any = functools.partial(make, SCENES[given.scene])
+    # The sweep writes this name of its function into its file, and resumes it under no other.
+    make_scene.__module__ = "mjbeer"
+    make_scene.__qualname__ = given.scene
+    options |= {"quantity": given.quantity, **steps(given)}
+    if given.output.suffix == ".nc":
+        # The sweep itself writes this file, again and again.
+        result = sweep(make_scene, given.duration, output=given.output, **options)
+    else:
+        with files.atomic_write(given.output) as temporary:
+            result = sweep(make_scene, given.duration, **options)
+            if given.output.suffix == ".csv":
+                _write_table(result, temporary)
+            else:
+                _plot(result, given.quantity, temporary)
+    # There is one line for each kind of failure.
+    for failure in result.attrs["failed"].splitlines():
+        say(f"failed: {_with_degrees(failure, result)}", "yellow")
     say(f"wrote {given.output}")
-    status = result["status"].values
-    counts = [
-        f"{np.count_nonzero(status == number)}: {text}"
-        for number, text in STATUSES.items()
-        if number in status
-    ]
-    doubted = np.count_nonzero((status == WELL) & ~result["trusted"].values)
-    if doubted:
-        counts.append(f"{doubted}: not trusted")
-    terminal.write("; ".join(counts) + "\n")
+    terminal.write("; ".join(_counts(result)) + "\n")
 
 
 def validate(given: Namespace) -> int:
@@ -133,15 +123,57 @@ def paper(given: Namespace) -> None:
 
 
 def _conclude(validation: Any) -> int:
-    """Print what failed and, on the last line, what passed; return the exit status."""
+    """Print each failure and, on the last line, how much passed; return the exit status."""
     for failure in validation.failures:
         say(f"FAILED: {failure}", "red")
     say(validation.sentence, "green" if validation.passed else "red")
     return 0 if validation.passed else 1
 
 
+def _counts(result: Any) -> list[str]:
+    """Return how many scenes of a sweep have each status, and how many are not trusted."""
+    from mjbeer.studies.sweep_runs import STATUSES, WELL
+
+    status = result["status"].values
+    counts = []
+    for number, meaning in STATUSES.items():
+        if number in status:
+            counts.append(f"{np.count_nonzero(status == number)}: {meaning}")
+    doubted = np.count_nonzero((status == WELL) & ~result["trusted"].values)
+    if doubted:
+        counts.append(f"{doubted}: not trusted")
+    return counts
+
+
+def _write_table(result: Any, path: Path) -> None:
+    """Write a sweep as CSV, in SI units and radians; a heading ends with the unit, if any."""
+    # A single scene has no dimensions, and xarray would refuse to make a table of it.
+    table = result.expand_dims("scene").to_dataframe().reset_index().drop(columns="scene")
+    units = {name: variable.attrs.get("units") for name, variable in result.variables.items()}
+    headings = {name: f"{name} [{unit}]" for name, unit in units.items() if unit}
+    table.rename(columns=headings).to_csv(path, float_format="%.17g", index=False)
+
+
+def _with_degrees(failure: str, result: Any) -> str:
+    """Return a line about a scene that failed, with degrees where `sweep` writes radians.
+
+    The line names the scene as "incline[1] = 0.0349066, fill[0] = 0.3".
+    """
+
+    def in_degrees(assignment: re.Match[str]) -> str:
+        name, place = assignment.groups()
+        angles = _in_degrees(result[name])
+        unit = angles.attrs["units"].replace("°", "degrees")
+        return f"{name}[{place}] = {angles.values[int(place)]:.6g} {unit}"
+
+    for name in result.dims:
+        if "rad" in result[name].attrs.get("units", ""):
+            failure = re.sub(rf"\b({name})\[(\d+)\] = [^,)]+", in_degrees, failure)
+    return failure
+
+
 def _plot(result: Any, quantity: str, path: Path) -> None:
-    """Plot a quantity over one parameter, or as a map over two, with angles in degrees."""
+    """Plot a quantity against one parameter, or as a map of two, with angles in degrees."""
     import matplotlib as mpl
     from matplotlib.figure import Figure
 

@@ -197,7 +197,7 @@ def render_standing(
       RenderingError: if OpenGL or ffmpeg does not work; the message says what to do.
       OutputError: if the file cannot be written.
     """
-    target = video.file_path(path)
+    target = video.check_target(path, width, height)
     plan = film.plan()
     with terminal.progress_bar(terminal.STDERR, len(plan.times(fps))) as show_progress:
         video.write(plan, target, width, height, fps, show_progress)

@@ -72,7 +72,7 @@ def render(
       RenderingError: if OpenGL or ffmpeg does not work; the message says what to do.
       OutputError: if the file cannot be written.
     """
-    target = None if path is None else file_path(path)
+    target = None if path is None else check_target(path, width, height)
     require.choice("progress", progress, (True, False))
     console = terminal.STDERR if progress else None
     require.instance("trajectory", trajectory, Trajectory)
@@ -90,21 +90,25 @@ def render(
         write(plan, target, width, height, fps, show_progress)
 
 
-def file_path(path: str | os.PathLike[str]) -> pathlib.Path:
-    """Return the path of a video.
+def _show_nothing(_: str) -> None:
+    """Stand for a progress bar that is not there."""
+
+
+def check_target(path: str | os.PathLike[str], width: int, height: int) -> pathlib.Path:
+    """Return the path of a video after checking it and the size [pixels], before a long run.
 
     Raises:
-      ParameterError: if it is no path, or does not end in .mp4.
+      ParameterError: if the name does not end in .mp4, or the size is not allowed.
+      OutputError: if the file cannot be written.
     """
     target = require.path(path)
     if target.suffix.lower() != ".mp4":
         name = require.format_value(str(path))
         raise ParameterError(f"the file's name must end in .mp4, got {name}")
+    _check_size("width", width)
+    _check_size("height", height)
+    files.check_writable(target)
     return target
-
-
-def _show_nothing(_: str) -> None:
-    """Stand for a progress bar that is not there."""
 
 
 def write(

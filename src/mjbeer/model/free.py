@@ -13,7 +13,8 @@ from mjbeer.model.free_numbers import lying_parameters, standing_parameters
 from mjbeer.model.mjcf_file import Parameters
 from mjbeer.model.setting import MUJOCO_INTEGRATORS, Setting
 from mjbeer.theory.can import Can
-from mjbeer.theory.scene import Scene, sliding
+from mjbeer.theory.paper_scenes import sliding
+from mjbeer.theory.scene import Scene
 from mjbeer.theory.standing import Standing, standing
 
 

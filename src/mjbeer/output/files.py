@@ -23,6 +23,26 @@ def atomic_write(path: str | os.PathLike[str]) -> Generator[pathlib.Path]:
       OutputError: if `path` is a folder, a device or read-only, or its folder does not exist or its
         disk is full.
     """
+    with _hidden_file(path) as (temporary, target):
+        yield temporary
+        with temporary.open("rb+") as file:
+            os.fsync(file.fileno())
+        temporary.replace(target)
+
+
+def check_writable(path: str | os.PathLike[str]) -> None:
+    """Check before a long run that `atomic_write` can write to `path`; a file there stays.
+
+    Raises:
+      OutputError: as `atomic_write` does.
+    """
+    with _hidden_file(path):
+        pass
+
+
+@contextmanager
+def _hidden_file(path: str | os.PathLike[str]) -> Generator[tuple[pathlib.Path, pathlib.Path]]:
+    """Yield a new hidden file, which is deleted at the end, and the file that it may replace."""
     # A link is kept, and the file that it points to is replaced.
     target = pathlib.Path(os.path.realpath(path))
     with output_errors(path, target.parent):
@@ -37,10 +57,7 @@ def atomic_write(path: str | os.PathLike[str]) -> Generator[pathlib.Path]:
             temporary.touch(exist_ok=False)
             # Before anything is in it that others must not read.
             _take_permissions(target, temporary)
-            yield temporary
-            with temporary.open("rb+") as file:
-                os.fsync(file.fileno())
-            temporary.replace(target)
+            yield temporary, target
         finally:
             temporary.unlink(missing_ok=True)
 

@@ -1,7 +1,7 @@
-"""A claim of the paper, its witness, and what is wrong with it, if anything is.
+"""A claim of the paper: an equation, the witness it is compared with, and its misprint, if any.
 
-The terms of an equation stand on one side, so that they sum to zero where it holds. The same text
-gives numbers when a claim is measured, and symbols when its equation is derived.
+An equation is a text with all its terms on one side, which sum to zero where it holds. The same
+text is evaluated with numbers when a claim is measured, and with symbols when it is derived.
 """
 
 import ast
@@ -22,21 +22,21 @@ if TYPE_CHECKING:
 CONFIRMED = "confirmed"
 CORRECTED = "confirmed after correction"
 LIMIT = "limit of validity"
-"""Verdicts on claims."""
+"""The verdicts on a claim that passes."""
 MISPRINT = "misprint"
 APPROXIMATION = "approximation"
 CONSEQUENCE = "consequence"
-"""Kinds of what is wrong: a slip; orders left out, of which the paper does not speak; what
-follows from a slip."""
+"""The kinds of errors in the paper: a slip; an approximation that leaves out orders without saying
+so; a consequence of a slip elsewhere."""
 
 
 class Observation(SimpleNamespace):
-    """The constants of a scene and what a witness measured of it, as equations name them.
+    """The constants of a scene and what a witness measured of it, by their names in equations.
 
-    Masses are `m` of the load and `can_mass` of the can (M in appendix B) [kg]. Inertias are
-    `inertia`, I_cm of the load about its centre of mass, and `can_inertia`, I_can of the can about
-    its axis [kg m^2]. `a` is the can's radius, and `b` the distance of the load's centre of mass
-    from the axis [m]. `g` and `alpha` are gravity and the incline.
+    `m` is the mass of the load, and `can_mass` that of the can, M in appendix B [kg]. `inertia` is
+    I_cm, of the load about its centre of mass, and `can_inertia` is I_can, of the can about its
+    axis [kg m^2]. `a` is the can's radius, and `b` the distance of the load's centre of mass from
+    the axis [m]. `g` is gravity [m/s^2], and `alpha` the incline [rad].
     """
 
     @classmethod
@@ -56,17 +56,17 @@ class Observation(SimpleNamespace):
 
     @property
     def axial(self) -> Any:
-        """Moment of inertia I_axis = I_cm + m b^2 of the load about the can's axis [kg m^2]."""
+        """The moment of inertia I_axis = I_cm + m b^2 of the load about the can's axis [kg m^2]."""
         return self.inertia + self.m * self.b**2
 
     @property
     def rolling(self) -> Any:
-        """K = m_can + I_can/a^2 [kg], effective mass of the rolling can."""
+        """The effective mass K = m_can + I_can/a^2 of the rolling can [kg]."""
         return self.can_mass + self.can_inertia / self.a**2
 
     @property
     def delta(self) -> Any:
-        """(m b^2/2)/(m b^2/2 + I_cm): how much I_C of eq. (3) varies during a turn."""
+        """(m b^2/2)/(m b^2/2 + I_cm): ripple of I_C, eq. (3), divided by its mean."""
         half = self.m * self.b**2 / 2
         return half / (half + self.inertia)
 
@@ -75,14 +75,15 @@ class _Equation(NamedTuple):
     """An equation that can be evaluated."""
 
     names: set[str]
+    """The names in it, but for `observed` itself."""
     terms: list[CodeType]
 
 
 def terms(equation: str, observed: Any) -> list[Any]:
     """Return the terms of an equation: "u - s - b*sin(phi)" has three.
 
-    It names what was observed, of which `observed` is the whole, and functions of NumPy's. What is
-    in parentheses after a sign is one term.
+    A name in it is that of an attribute of `observed`, of `observed` itself, or of a function of
+    NumPy. A sum in parentheses that follows a sign is one term.
     """
     compiled = _compiled(equation)
     named = {"observed": observed}
@@ -112,14 +113,15 @@ def _split(node: ast.expr) -> Generator[ast.expr]:
 
 
 def value(equation: str, observed: Any) -> Any:
-    """Return the sum of the terms, for a text that is one side of an equation."""
+    """Return the value of one side of an equation, which is the sum of its terms."""
     return sum(terms(equation, observed))
 
 
 def relative_residual(terms: Sequence[Any], scale: Any = None) -> float:
     """Return the largest sum of the terms at any sample, divided by the largest `scale`.
 
-    Without a `scale` it is the largest single term. The result is NaN if that is zero.
+    Without a `scale` it is divided by the largest single term. If the divisor is zero, the result
+    is NaN.
     """
     scales = terms if scale is None else [scale]
     largest = max(float(np.abs(np.asarray(size, dtype=float)).max()) for size in scales)
@@ -132,53 +134,54 @@ class Witness(NamedTuple):
 
     name: str
     observe: Callable[[], Any]
-    """Computes what the claim names: a motion, or numbers."""
+    """Simulates or computes what the claim's equation names."""
 
 
 class Bound(NamedTuple):
-    """The error that what is right may have."""
+    """The largest error that the right equation may have."""
 
     error: float
     reason: str
-    """What causes the error."""
+    """What causes such an error."""
 
 
 class Limit(NamedTuple):
-    """Where a claim that holds only in a limit no longer does."""
+    """A case for which a claim must fail, because it holds only in a limit."""
 
     expected_error: float
-    """The error that the claim must have there."""
+    """The error that the claim must have in this case."""
     observe: Callable[[], Any]
+    """Simulates or computes this case."""
 
 
 @dataclass(frozen=True)
 class Misprint:
-    """What the paper prints in place of what is right."""
+    """A wrong equation that the paper prints, and the formula to show it."""
 
     expected_error: float
-    """The error that it must have."""
+    """The error that the printed equation must have."""
     wrong: str
-    """The equation as it is printed."""
+    """The printed equation."""
     about: str
-    """What the formula is of, as a heading."""
+    """The heading of the formula: what it describes."""
     latex: str
     r"""The formula, with `<printed|right>` where the two differ; `\\` begins a new line."""
     kind: str = MISPRINT
     of: str = ""
-    """The equation that it is a consequence of."""
+    """The equation with the slip, if this is a consequence."""
 
     @property
-    def printed(self) -> str:
-        r"""The formula as printed, in LaTeX; what differs stands in `\textcolor{differs}{...}`."""
+    def printed_latex(self) -> str:
+        r"""The printed formula; what differs stands in `\textcolor{differs}{...}`."""
         return self._with_marked_group(1)
 
     @property
-    def right(self) -> str:
-        """The same as it is right."""
+    def right_latex(self) -> str:
+        """The right formula, with the same marks."""
         return self._with_marked_group(2)
 
     def _with_marked_group(self, group: int) -> str:
-        """Return the formula with the first or second of the texts that differ, marked."""
+        """Return the formula with the first or the second of each two texts that differ."""
 
         def marked(difference: re.Match[str]) -> str:
             lines = [line for line in difference[group].split(r"\\ ") if line]
@@ -196,25 +199,25 @@ class Claim:
     """
 
     equation: str
-    """Its number, or the section, footnote or figure that it is in."""
+    """The number of the equation, or the section, footnote or figure of the statement."""
     quantity: str
-    """What is claimed of what."""
+    """What is claimed, in words."""
     witness: Witness
     bound: Bound
     residual: str
-    """The equation as it is right, whose terms sum to zero."""
+    """The right equation, whose terms sum to zero."""
     misprint: Misprint | None = None
-    """What is printed instead."""
+    """What the paper prints instead."""
     limit: Limit | None = None
-    """Where it no longer holds."""
+    """A case for which the equation no longer holds."""
     quote: str = ""
-    """The paper's own words, where the claim rests on these."""
+    """The paper's own words, if the claim rests on them."""
     scale: str = ""
-    """What an error is a share of, if not of the largest term."""
+    """What the error is divided by, if not by the largest term."""
 
     @property
     def verdict(self) -> str:
-        """What a claim that passes shows of the paper."""
+        """The verdict on the paper if the claim passes."""
         if self.limit:
             return LIMIT
         return CORRECTED if self.misprint else CONFIRMED
@@ -230,7 +233,7 @@ class Claim:
         return relative_residual(terms(equation, observed), scale)
 
     def measure(self) -> Result:
-        """Compute the errors of what is right, and of what is printed or beyond the limit."""
+        """Measure the error of the right equation, and of the misprint or beyond the limit."""
         observed = self.witness.observe()
         values: dict[str, Any] = {"verdict": self.verdict}
         if self.misprint:

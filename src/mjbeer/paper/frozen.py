@@ -1,6 +1,6 @@
 """Appendix A of the paper, eqs. (50)-(55) and sec. A.1 to A.3: beer frozen to a massless can.
 
-The load has the I_axis = m a^2/2 of a half can, and any b.
+In its equations the load has I_axis = m a^2/2, as a half cylinder has, and any b.
 """
 
 import math
@@ -27,21 +27,22 @@ from mjbeer.paper.witness import (
     simulated,
 )
 from mjbeer.simulation.simulate import simulate
-from mjbeer.theory.scene import Scene, frozen
+from mjbeer.theory.paper_scenes import frozen
+from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import exact
 
 _CREEP = 1e-3
-"""A can counts as slipping if it slips by more than this in a second, in radii; one that holds
-slips by 1e-7."""
+"""Slip in a second [radii] above which a can counts as slipping; one that holds creeps by 1e-7."""
 _EQ_52 = (
     "3*a**2/2*phi_ddot - 2*a*b*cos(phi)*phi_ddot + {}a*b*sin(phi)*phi_dot**2 "
     "- g*a*sin(alpha) + g*b*sin(theta)"
 )
-"""Eq. (52), of which footnote 8 has ab as half of what it is."""
+"""Eq. (52); footnote 8 prints it with a factor of 0.5 in the term with phi_dot^2."""
 PRINTED_8 = _EQ_52.format("0.5*")
 EQ_55 = "g*b*cos(alpha + rest)/(3*a**2/2 - {}*a*b*cos(rest))"
-"""omega^2 [1/s^2] by eq. (55) with the factor 2; its misprint has 1."""
+"""omega^2 [1/s^2] by eq. (55) with the factor 2; the paper prints it with 1."""
 _SINE_54 = "turn*cos(alpha + rest) + (sin(alpha + rest) - sin(alpha + rest + turn))"
+"""The change of sin(alpha + phi) in a `turn` from `rest`: to first order, less the whole change."""
 
 
 def equilibrium_53(scene: Scene) -> float:
@@ -68,7 +69,7 @@ def _acceleration(scene: Scene, phi: float) -> float:
 
 @cache
 def _rest() -> Observation:
-    """Return where MuJoCo's acceleration changes sign, below 60 degrees."""
+    """Return `rest` [rad], the angle from 0 to 60 degrees at which MuJoCo's acceleration is 0."""
     scene = frozen()
     rest = brentq(lambda phi: _acceleration(scene, phi), 0.0, math.pi / 3, xtol=1e-15)
     return Observation.of(scene, rest=float(rest))
@@ -79,7 +80,7 @@ def _steepest_incline() -> float:
     """Return the incline [rad] above which MuJoCo's can rolls off from any angle."""
 
     def largest_acceleration(incline: float) -> float:
-        """Return that of a can whose centre of mass is as far uphill as it can be."""
+        """Return the acceleration where the centre of mass is farthest uphill of the axis."""
         return _acceleration(frozen(incline), math.pi / 2 - incline)
 
     return float(brentq(largest_acceleration, 0.2, 0.8, xtol=1e-15))
@@ -104,33 +105,35 @@ def _least_friction() -> Observation:
 def _mean_acceleration(part: float = 1.0) -> Observation:
     """Return the axis's mean `acceleration` [m/s^2] in a roll-down with a `part` of b.
 
-    It is that between the whole turns after 8 s and 16 s from phi = pi.
+    The can starts at phi = pi. The mean is from the last whole turn that ends before 8 s to the
+    last one that ends before 16 s.
     """
     scene = footnote_scene(part)
     run = simulate(scene, 16, math.pi, rolling="equality", integrator="DOP853")
-    moments = []
     angles = []
-    for time in (8.0, 16.0):
-        last = float(np.interp(time, run.time, run.phi))
-        angles.append(2 * math.pi * math.floor((last - math.pi) / (2 * math.pi)))
-        moments.append(float(np.interp(math.pi + angles[-1], run.phi, run.time)))
-    # At a constant acceleration A the angle is A t^2/2, so that its root grows evenly.
-    growth = (math.sqrt(angles[1]) - math.sqrt(angles[0])) / (moments[1] - moments[0])
+    times = []
+    for latest in (8.0, 16.0):
+        turned = float(np.interp(latest, run.time, run.phi)) - math.pi
+        whole_turns = 2 * math.pi * math.floor(turned / (2 * math.pi))
+        angles.append(whole_turns)
+        times.append(float(np.interp(math.pi + whole_turns, run.phi, run.time)))
+    # At a constant angular acceleration A the angle is A t^2/2: its square root grows evenly.
+    growth = (math.sqrt(angles[1]) - math.sqrt(angles[0])) / (times[1] - times[0])
     return Observation.of(
         scene, acceleration=2 * growth**2 * scene.can.radius, turn=2 * np.pi * np.arange(64) / 64
     )
 
 
 def _beside_theory() -> Observation:
-    """Return the roll-down of footnote 8, and phi by exact theory as `theory` [rad]."""
+    """Return the roll-down of footnote 8, with phi by exact theory as `theory` [rad]."""
     observed = FOOTNOTE_8.observe()
     return Observation(**vars(observed), theory=exact(footnote_scene(), observed.time, math.pi).phi)
 
 
 def _lift_off_time() -> Observation:
-    """Return when a can in contact that rolls down has lifted off by 1e-6 radii [s].
+    """Return when a can that rolls down in contact lifts off [s].
 
-    By exact theory it does so when N = 0.
+    `lifts` is when it is 1e-6 radii above the incline, `theory` when N = 0 by exact theory.
     """
     run = simulate(footnote_scene(), 0.9, math.pi, rolling="contact", timestep=1e-4, friction=1e3)
     lifts = float(run.time[np.argmax(run.lift > 1e-6 * run.scene.can.radius)])

@@ -1,9 +1,8 @@
-"""Appendix A.4 of the paper: a hoop with a point mass on its rim, which may hop.
+"""Appendix A.4 of the paper: a hoop of mass M with a point mass m on its rim, which may hop.
 
-The hoop has the mass M and the point mass m, which falls from the top.
-
-The paper has no equations for it. The ones here hold while the hoop rolls without slipping on level
-ground. `ratio` is M/m, and phi [rad] is 0 where the point mass is at the bottom.
+The point mass falls from the top. The paper has no equations for this; those here hold while the
+hoop rolls without slipping on level ground. `ratio` is M/m, and phi [rad] is 0 where the point mass
+is at the bottom.
 """
 
 import math
@@ -19,13 +18,13 @@ from mjbeer.paper.claim import Bound, Claim, Limit, Witness
 from mjbeer.paper.witness import CONTACT, GRIP
 from mjbeer.simulation.run import Run
 from mjbeer.simulation.simulate import simulate
-from mjbeer.theory.scene import Scene, hoop
+from mjbeer.theory.paper_scenes import hoop
+from mjbeer.theory.scene import Scene
 
 RATIO = 1 / 20  # M/m of the hoop that hops
 MU = 0.8  # friction coefficient of the hoop that skids: the kinetic one in the paper's last figure
 TOP = math.pi - 0.05
-"""Angle phi [rad] from which a hoop falls: a little beside pi, the top, where it would stay in
-balance."""
+"""Angle phi [rad] at which a hoop is let go: a little beside pi, where it would stay in balance."""
 
 
 def rate(ratio: float, phi: float | np.ndarray) -> Any:
@@ -56,7 +55,7 @@ def friction(ratio: float, phi: float | np.ndarray) -> Any:
 
 
 def _least_normal(ratio: float) -> tuple[float, float]:
-    """Return the least N/(m g) during the fall, and the phi [rad] of it."""
+    """Return the least N/(m g) during the fall, and the phi [rad] at which it is."""
     least = minimize_scalar(
         lambda phi: normal(ratio, phi), bounds=(0.3, 3.1), options={"xatol": 1e-9}
     )
@@ -65,10 +64,11 @@ def _least_normal(ratio: float) -> tuple[float, float]:
 
 def lift_off(ratio: float) -> float:
     """Return the angle from the top [rad] at which N = 0; NaN if N stays positive."""
-    least, place = _least_normal(ratio)
+    least, phi_of_least = _least_normal(ratio)
     if least >= 0:
         return math.nan
-    return math.pi - float(brentq(lambda phi: normal(ratio, phi), place, math.pi, xtol=1e-14))
+    lifts = brentq(lambda phi: normal(ratio, phi), phi_of_least, math.pi, xtol=1e-14)
+    return math.pi - float(lifts)
 
 
 def slip(ratio: float, mu: float) -> float:
@@ -90,13 +90,14 @@ def _threshold() -> float:
 
 
 def _hoop(ratio: float) -> Scene:
+    """Return a hoop of the mass ratio M/m on level ground."""
     return hoop(hoop_mass=0.2 * ratio, load_mass=0.2)
 
 
 def fall(ratio: float, friction: float, timestep: float) -> Run:
     """Return half a second of a hoop in contact that is let go at `TOP`.
 
-    A hoop that lifts off has done so by then.
+    Within this time it lifts off, if it does so at all.
     """
     return simulate(_hoop(ratio), 0.5, TOP, rolling="contact", timestep=timestep, friction=friction)
 
@@ -104,34 +105,37 @@ def fall(ratio: float, friction: float, timestep: float) -> Run:
 def takeoff(run: Run) -> float | None:
     """Return the load's angle from the top [rad] when the hoop lifts off; None if it stays.
 
-    A lift of up to 1e-9 radii counts as touching: a soft contact sinks in by more than that.
+    A hoop up to 1e-9 radii above the ground counts as touching: a soft contact sinks in by more.
     """
     above = run.lift > 1e-9 * run.scene.can.radius
     return math.pi - float(run.phi[np.argmax(above)]) if above.any() else None
 
 
 def _lifts_off() -> SimpleNamespace:
+    """Return the angle from the top [rad] at which the hoop lifts off, simulated and by theory."""
     return SimpleNamespace(angle=takeoff(fall(RATIO, GRIP, 2e-5)), theory=lift_off(RATIO))
 
 
 def _skids() -> SimpleNamespace:
-    """Return the angle from the top [rad] at which the rim slides.
+    """Return the angle from the top [rad] at which the rim begins to slide, also by theory.
 
-    It then slides faster than 1e-5 of the largest speed of the axis.
+    It counts as sliding above 1e-5 of the largest speed of the axis.
     """
     run = fall(RATIO, MU, 2e-5)
     rim = np.abs(run.u_dot - run.scene.can.radius * run.roll_dot)
-    angle = math.pi - float(run.phi[np.argmax(rim > 1e-5 * np.abs(run.u_dot).max())])
+    slides = rim > 1e-5 * np.abs(run.u_dot).max()
+    angle = math.pi - float(run.phi[np.argmax(slides)])
     return SimpleNamespace(angle=angle, theory=slip(RATIO, MU))
 
 
 def _height(rolling: Rolling) -> np.ndarray:
-    """Return how high the axis of a hoop that starts with a push is, in radii."""
+    """Return the height of the axis [radii] at each sample, for a hoop that starts with a push."""
     run = simulate(_hoop(RATIO), 0.3, -3.0, 16.0, rolling=rolling, timestep=1e-4, friction=GRIP)
     return 1 + np.maximum(run.lift / run.scene.can.radius, 0.0)
 
 
 def _friction_at_lift_off(ratio: float) -> float:
+    """Return |F|/(m g) when the hoop lifts off, by theory."""
     return abs(friction(ratio, math.pi - lift_off(ratio)))
 
 

@@ -1,7 +1,8 @@
 """Sec. 3.1 of the paper, eqs. (39)-(49): a can with mass; and appendix B, (56)-(61).
 
-The hoop wheel of appendix B, of mass M = `can_mass`, with a pendulum, has the equations of the can
-with I_can/a^2 = m_can = M and I_cm = 0, as the paper says: K, the name `rolling`, is 2M.
+The wheel of appendix B is a hoop of mass M with a pendulum. As the paper says, its equations are
+those of the can with m_can = M, I_can/a^2 = M and I_cm = 0. In equations M is `can_mass`, and
+K = m_can + I_can/a^2 is `rolling`, which is 2M for the wheel.
 """
 
 import math
@@ -21,59 +22,64 @@ from mjbeer.paper.witness import (
     simulated,
 )
 from mjbeer.theory.can import Can
-from mjbeer.theory.scene import Scene, pendulum, sliding
+from mjbeer.theory.paper_scenes import pendulum, sliding
+from mjbeer.theory.scene import Scene
 
-_CAN_39 = (
-    "rolling/2*s_dot**2 + rolling*b*cos(phi)*s_dot*phi_dot + rolling/2*b**2*{}(phi)**2*phi_dot**2"
+_KINETIC_39 = (
+    "rolling/2*s_dot**2 + rolling*b*cos(phi)*s_dot*phi_dot + rolling/2*b**2*cos(phi)**2*phi_dot**2"
 )
-"""T_can [J] in s and phi; its last term has the cosine, printed with the sine."""
-_POTENTIAL_40 = (
-    "- can_mass*g*s*sin(alpha) - can_mass*g*b*sin(phi)*sin(alpha)"  # V_can [J] in s and phi
+_PRINTED_39 = (
+    "rolling/2*s_dot**2 + rolling*b*cos(phi)*s_dot*phi_dot + rolling/2*b**2*sin(phi)**2*phi_dot**2"
 )
-_TWICE_44 = "m/2*u_dot**2 - m*b*cos(phi)*u_dot*phi_dot + m/2*b**2*phi_dot**2"  # m v_beer^2/2 [J]
+"""T_can [J] in s and phi, and as the paper prints it: with sin^2 for the cos^2 of the last term."""
+_POTENTIAL_40 = "- can_mass*g*s*sin(alpha) - can_mass*g*b*sin(phi)*sin(alpha)"
+"""V_can [J] in s and phi."""
+_TWICE_44 = "m/2*u_dot**2 - m*b*cos(phi)*u_dot*phi_dot + m/2*b**2*phi_dot**2"
+"""m v_beer^2/2 [J], the energy of the beer's centre of mass, which eq. (56) has too."""
 _MOTION_46 = (
     "(m + rolling)*u_ddot - m*b*cos(phi)*phi_ddot + m*b*sin(phi)*phi_dot**2 "
     "- (m + can_mass)*g*sin(alpha)"
 )
-_MOTION_47 = "{}*{} - m*b*cos(phi)*u_ddot + m*g*b*sin(theta)"
-"""I_axis theta_ddot - m b cos(phi) u_ddot = -m g b sin(theta); a misprint has other factors in
-the first term."""
+_AFTER_47 = " - m*b*cos(phi)*u_ddot + m*g*b*sin(theta)"
+"""Eqs. (47) and (58), I_axis theta_ddot - m b cos(phi) u_ddot = -m g b sin(theta), without the
+first term, which the paper prints wrong. There phi_ddot is theta_ddot."""
 _MOTION_48 = (
     "(m + rolling)*s_ddot + rolling*b*cos(phi)*phi_ddot - rolling*b*sin(phi)*phi_dot**2 "
     "- (m + can_mass)*g*sin(alpha)"
 )
-_MOTION_16 = (
+_COMMON_49 = (
     "(inertia + m*b**2*sin(phi)**2)*phi_ddot + m*b**2*sin(phi)*cos(phi)*phi_dot**2 + "
-    "m*g*b*cos(alpha)*sin(phi) "
-    "+ rolling*b*cos(phi)*s_ddot"
+    "m*g*b*cos(alpha)*sin(phi) + rolling*b*cos(phi)*s_ddot"
 )
 _MOTION_49 = (
-    f"{_MOTION_16} + rolling*b**2*cos(phi)**2*phi_ddot - rolling*b**2*sin(phi)*cos(phi)*phi_dot**2 "
+    f"{_COMMON_49} + rolling*b**2*cos(phi)**2*phi_ddot - rolling*b**2*sin(phi)*cos(phi)*phi_dot**2 "
     "- can_mass*g*b*sin(alpha)*cos(phi)"
 )
-_PRINTED_49 = f"{_MOTION_16} + rolling*b**2*sin(phi)**2*phi_ddot"
-"""Eq. (16) with what the can adds to it, corrected and as printed."""
-_OF_THE_WHOLE = "rolling*u_dot**2/2 - kinetic"
-_OF_THE_CAN = "- can_mass*g*u*sin(alpha) - potential"
-"""The can's kinetic energy, or its potential energy, less that of the whole."""
+_PRINTED_49 = f"{_COMMON_49} + rolling*b**2*sin(phi)**2*phi_ddot"
+"""Eq. (49), corrected and as printed; both have the terms of eq. (16), and one with s_ddot."""
+_CAN_LESS_KINETIC = "rolling*u_dot**2/2 - kinetic"
+_CAN_LESS_POTENTIAL = "- can_mass*g*u*sin(alpha) - potential"
+"""The kinetic and the potential energy [J] of the can, each less that of can and beer."""
 _STEADY = "g*sin(alpha)*(m + can_mass)/(m + {})"
-"""Acceleration [m/s^2] of a can whose beer does not swing."""
+"""Acceleration [m/s^2] of a can whose beer does not swing; the gap is for K."""
 _BOB_59 = "m*s_dot**2/2 + m*b**2*sin(phi)**2*phi_dot**2/2"
+"""T [J] of the pendulum in s and phi."""
 
 
 def _rests(scene: Scene) -> Witness:
+    """Return the witness of a motion without a swing."""
     return simulated(scene, scene.equilibrium())
 
 
 def _of_the_wheel(equation: str) -> str:
-    """Return the equation of a can with K = 2M."""
+    """Return an equation of the can with the K = 2M of the wheel."""
     return equation.replace("rolling", "2*can_mass")
 
 
 def _bob(ratio: float, heavy: bool = False) -> Observation:
-    """Return the frequency of a bob of `ratio` wheel masses, over some twenty small swings.
+    """Return the frequency of a bob of `ratio` wheel masses in about twenty small swings.
 
-    A swing of a heavy bob is small only if phi^2 is well below 2M/m.
+    For a `heavy` bob a swing is small only if phi^2 is well below 2M/m.
     """
     scene = pendulum(load_mass=0.2 * ratio)
     amplitude = SMALL / math.sqrt(ratio / 2) if heavy else SMALL
@@ -83,6 +89,7 @@ def _bob(ratio: float, heavy: bool = False) -> Observation:
 _HALF_FULL = _rests(sliding(can=Can.sheet_metal()))
 _NEARLY_EMPTY = _rests(sliding(fill=0.01, can=Can.sheet_metal(thickness=1e-3)))
 _HOOP = _rests(sliding(fill=0.01, can=Can.hoop(mass=0.6)))
+# The formulas of eq. (49) in LaTeX: its left side, K, and what K multiplies.
 _LEFT_49 = (
     r"(I_{\text{cm}}+mb^2\sin^2\!\varphi)\,\ddot\varphi"
     r"+mb^2\sin\varphi\,\cos\varphi\,\dot\varphi^2\\ {}+"
@@ -123,16 +130,16 @@ CLAIMS = (
         "T_can in s and phi: its last term has cos^2; printed sin^2",
         METAL,
         HELD,
-        residual=f"{_CAN_39.format('cos')} - (kinetic - ({KINETIC_11}))",
+        residual=f"{_KINETIC_39} - (kinetic - ({KINETIC_11}))",
         misprint=Misprint(
             0.060,
-            wrong=f"{_CAN_39.format('sin')} - (kinetic - ({KINETIC_11}))",
+            wrong=f"{_PRINTED_39} - (kinetic - ({KINETIC_11}))",
             about="Kinetic energy of the can",
             latex=r"\frac12" + _CAN + r"\bigl(\dot s^2+2b\cos\varphi\,\dot s\,\dot\varphi\\ "
             r"{}+b^2<\sin^2\!\varphi|\cos^2\!\varphi>\,\dot\varphi^2\bigr)",
         ),
     ),
-    Claim("(40)", "V_can in u", METAL, EXACT, residual=POTENTIAL_14 + _OF_THE_CAN),
+    Claim("(40)", "V_can in u", METAL, EXACT, residual=POTENTIAL_14 + _CAN_LESS_POTENTIAL),
     Claim(
         "(40)",
         "V_can in s and phi",
@@ -176,21 +183,25 @@ CLAIMS = (
         "T_beer in u and theta",
         METAL,
         HELD,
-        residual=f"{_TWICE_44} + inertia*phi_dot**2/2 + {_OF_THE_WHOLE}",
+        residual=f"{_TWICE_44} + inertia*phi_dot**2/2 + {_CAN_LESS_KINETIC}",
     ),
-    Claim("(44)", "T_beer in s and phi", METAL, HELD, residual=f"{KINETIC_11} + {_OF_THE_WHOLE}"),
-    Claim("(45)", "V_beer in u and theta", METAL, EXACT, residual=POTENTIAL_17 + _OF_THE_CAN),
-    Claim("(45)", "V_beer in s and phi", METAL, EXACT, residual=POTENTIAL_14 + _OF_THE_CAN),
+    Claim(
+        "(44)", "T_beer in s and phi", METAL, HELD, residual=f"{KINETIC_11} + {_CAN_LESS_KINETIC}"
+    ),
+    Claim(
+        "(45)", "V_beer in u and theta", METAL, EXACT, residual=POTENTIAL_17 + _CAN_LESS_POTENTIAL
+    ),
+    Claim("(45)", "V_beer in s and phi", METAL, EXACT, residual=POTENTIAL_14 + _CAN_LESS_POTENTIAL),
     Claim("(46)", "equation of motion of u", METAL, HELD, residual=_MOTION_46),
     Claim(
         "(47)",
         "equation of motion of theta: I_axis; printed m a^2 (for m a^2/2 of a half can)",
         METAL,
         HELD,
-        residual=_MOTION_47.format("axial", "phi_ddot"),
+        residual="axial*phi_ddot" + _AFTER_47,
         misprint=Misprint(
             0.50,
-            wrong=_MOTION_47.format("m*a**2", "phi_ddot"),
+            wrong="m*a**2*phi_ddot" + _AFTER_47,
             about="Massive can: equation of motion of θ",
             latex=r"<ma^2|I_{\text{axis}}>\,\ddot\theta-mb\cos(\theta-\alpha)\,\ddot "
             r"u=-mgb\sin\theta",
@@ -280,10 +291,10 @@ OF_THE_WHEEL = (
         "equation of motion of theta: theta_ddot; printed theta (in SI units)",
         WHEEL,
         HELD,
-        residual=_MOTION_47.format("m*b**2", "phi_ddot"),
+        residual="m*b**2*phi_ddot" + _AFTER_47,
         misprint=Misprint(
             1.12,
-            wrong=_MOTION_47.format("m*b**2", "theta"),
+            wrong="m*b**2*theta" + _AFTER_47,
             about="Pendulum in a wheel: equation of motion of θ",
             latex=r"mb^2<\theta|\ddot\theta>-mb\cos(\theta-\alpha)\,\ddot u=-mgb\sin\theta",
         ),
@@ -293,10 +304,10 @@ OF_THE_WHEEL = (
         "T in s and phi: cos^2; printed sin^2",
         WHEEL,
         HELD,
-        residual=_of_the_wheel(f"{_CAN_39.format('cos')} + {_BOB_59} - kinetic"),
+        residual=_of_the_wheel(f"{_KINETIC_39} + {_BOB_59} - kinetic"),
         misprint=Misprint(
             0.28,
-            wrong=_of_the_wheel(f"{_CAN_39.format('sin')} + {_BOB_59} - kinetic"),
+            wrong=_of_the_wheel(f"{_PRINTED_39} + {_BOB_59} - kinetic"),
             about="Pendulum in a wheel: kinetic energy of the wheel",
             latex=r"M(\dot s^2+2b\cos\varphi\,\dot "
             r"s\,\dot\varphi+b^2<\sin^2\!\varphi|\cos^2\!\varphi>\,\dot\varphi^2)",

@@ -17,31 +17,39 @@ from mjbeer.paper.claim import (
 )
 from mjbeer.paper.witness import EXACT, REDUCED, TENTH, loop, oscillate, simulated
 from mjbeer.simulation.simulate import simulate
-from mjbeer.theory.scene import INCLINE, sliding
+from mjbeer.theory.paper_scenes import sliding
+from mjbeer.theory.scene import INCLINE
 
 FAST = 350.0
-"""phi_dot [rad/s] at phi = 0 of a load that loops fast: nine times the least that does."""
+"""phi_dot [rad/s] at phi = 0 of a load that loops fast: nine times the least at which one loops."""
 SLOW = 45.0
-"""The same of a load that just loops. It takes 39.4 rad/s to loop; above 47.4 rad/s the can
-would leave the incline."""
+"""phi_dot [rad/s] at phi = 0 of a load that just loops: 39.4 rad/s is the least, and above 47.4
+rad/s the can would leave the incline."""
 _DECADE = (50.0, 100.0, 200.0, 400.0)
 """Rates phi_dot [rad/s] at phi = 0 of loads that loop; their mean rates span a decade, 35 to 354
 rad/s."""
-_HESITATION = 0.01  # amplitude [rad] of the swing in which the can's hesitation is measured
+_HESITATION = 0.01
+"""Amplitude [rad] of the swing in which the can's hesitation is measured."""
 _PHASE = np.linspace(0, 2 * math.pi, 65)
-_TOP = 3.1  # angle [rad] beside the top from which a load is let go that does not loop
+_TOP = 3.1
+"""Angle [rad] near the top, pi, at which a load that does not loop is let go."""
 
-SQUARES_25 = "sin(x)**2/2 - 1/4 + cos(2*x)/{}"  # 4 is right, the paper has 2
+SQUARES_25 = "sin(x)**2/2 - 1/4 + cos(2*x)/{}"
+"""The last step of eq. (25): the divisor is 4, and the paper prints 2."""
 PRINTED_28 = "m*b*g*cos(alpha)/(Omega**2*(m*b**2/2 + inertia))"
 """Amplitude [rad] of the ripple at Omega by eqs. (27) and (28)."""
 CORRECTED_28 = f"{PRINTED_28}*(1 - 3*delta/8)"
-"""The same to first order in delta; the ripple at 2 Omega lowers it."""
-_NORMAL = "m*(g*cos(alpha) + across_ddot)"  # N [N], from MuJoCo's acceleration of the load
+"""This amplitude [rad] to first order in delta; the ripple at 2 Omega lowers it."""
+_NORMAL = "m*(g*cos(alpha) + across_ddot)"
+"""N [N], from MuJoCo's acceleration of the load."""
 
 
 @cache
 def _ripple() -> Observation:
-    """Return the amplitudes [m] of cos(k omega t) in u less its steady acceleration."""
+    """Return `ripple`: at index k, the amplitude [m] of cos(k omega t) in u for a small swing.
+
+    The distance due to the steady acceleration is subtracted from u first.
+    """
     period = 2 * math.pi / oscillate(sliding(), _HESITATION).omega
     times = period * np.arange(64) / 64
     run = simulate(sliding(), period, _HESITATION, integrator="DOP853", times=times)
@@ -58,7 +66,10 @@ def _furthest_from_rest() -> float:
 
 
 def _furthest_with_push() -> float:
-    """Return the same from phi = 0, 1.01 times as fast as just carries it to the top."""
+    """Return the largest |phi| [rad] of beer that starts at phi = 0 with a push.
+
+    Its rate is 1.01 times the least that carries it to the top.
+    """
     form = sliding().oscillator
     separatrix = math.sqrt(2 * form.drop(0.0, math.pi) / form.inertia(0.0))
     run = simulate(sliding(), 0.55, 0.0, 1.01 * separatrix, integrator="DOP853")
@@ -66,7 +77,7 @@ def _furthest_with_push() -> float:
 
 
 def _slope() -> float:
-    """Return by which power of Omega the ripple of phi at Omega grows, in a decade of Omega."""
+    """Return the exponent of Omega to which the ripple of phi at Omega is proportional."""
     turns = [loop(sliding(), phi_dot0) for phi_dot0 in _DECADE]
     rates = [turn.Omega for turn in turns]
     amplitudes = [turn.ripple[1] for turn in turns]
@@ -75,7 +86,10 @@ def _slope() -> float:
 
 
 def _synthesis() -> Observation:
-    """Return how far phi is ahead of Omega t in a turn, and its waves up to 16 Omega [rad]."""
+    """Return phi - Omega t [rad] during one turn, in two ways.
+
+    `ahead` is as simulated, and `waves` is the sum of the ripples at Omega to 16 Omega.
+    """
     turn = loop(sliding(), FAST)
     times = _PHASE / turn.Omega
     run = simulate(

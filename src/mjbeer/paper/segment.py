@@ -1,4 +1,7 @@
-"""Masses and inertias, of a half cylinder (7)-(9), sheet metal (30), (31), a segment (32)-(38).
+"""Masses, centres of mass and inertias of beer and can: eqs. (7)-(9) and (30)-(38) of the paper.
+
+Eqs. (7)-(9) are for a half cylinder, (30) and (31) for a can of sheet metal, (32)-(38) for a
+segment.
 
 Lengths are in can radii a, areas in a^2 and inertias in m a^2, unless a unit is given. beta [rad]
 is half the angle that the beer subtends at the axis.
@@ -15,7 +18,7 @@ import numpy as np
 from mjbeer.model.build import build
 from mjbeer.paper.claim import Bound, Claim, Misprint, Witness
 from mjbeer.theory.can import ALUMINIUM, BEER, LENGTH, RADIUS, THICKNESS, Can
-from mjbeer.theory.scene import sliding
+from mjbeer.theory.paper_scenes import sliding
 
 FILLS = (0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95)
 """Fills at which the formulas of section 3 are compared with quadrature, on both sides of a
@@ -28,22 +31,23 @@ _SECOND_36 = (
 )
 _THIRD_36 = f"4/3*(3*beta/4 - 3*sin(2*beta)/8 + sin(2*beta)*sin(beta)**2/{{}})/{_TWICE_AREA}"
 _LAST_36 = f"(1 + 2*sin(2*beta)*sin(beta)**2/(3*{_TWICE_AREA}))/2"
-"""I_axis/(m a^2) by the second line of eq. (36), with its integrals evaluated, its third line,
-and its last form."""
-_AXIAL = " - (inertia + b**2)"  # less I_axis/(m a^2) by quadrature
+"""I_axis/(m a^2) by three forms of eq. (36): the second line, with its integrals evaluated; the
+third line, with a gap for the divisor, which is 4 and printed 8; and the last form."""
+_LESS_AXIAL = " - (inertia + b**2)"
+"""Less I_axis/(m a^2) by quadrature."""
 
 _PAPER = {"a": RADIUS, "l": LENGTH, "t": THICKNESS, "rho": ALUMINIUM, "rho_beer": BEER}
-"""The letters of sizes [m] and densities [kg/m^3]."""
+"""Sizes [m] and densities [kg/m^3] by the paper's letters."""
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(40)
-"""Those of Gauss quadrature, which with 24 points is exact to rounding for the segment's
-integrals."""
+"""Nodes and weights of Gauss quadrature; 24 points already give the segment's integrals to
+rounding."""
 
 
 class _Segment(NamedTuple):
     """Beer in cross-section, for one fill or for several, as arrays."""
 
     fill: Any
-    """h/2a."""
+    """h/(2a)."""
     beta: Any
     area: Any
     b: Any
@@ -54,7 +58,7 @@ class _Segment(NamedTuple):
 
 
 def _segments(*fills: float) -> SimpleNamespace:
-    """Return the segments of some fills, by quadrature, with the letters of sizes."""
+    """Return the segments of some fills, by quadrature, with sizes and densities."""
     columns = _Segment(*np.transpose([_segment(fill) for fill in fills]))
     return SimpleNamespace(**columns._asdict(), **_PAPER)
 
@@ -62,24 +66,25 @@ def _segments(*fills: float) -> SimpleNamespace:
 def _segment(fill: float) -> _Segment:
     """Return the segment of one fill, by integrals over strips along the flat side.
 
-    A strip ends at the angle t <= beta at the axis: for a = 1 its height is y = cos(t), and it has
-    dA = 2 sin^2(t) dt.
+    A strip spans the angles -t to t, seen from the axis, with t <= beta. For a = 1 it is at the
+    distance cos(t) from the axis, and its area is dA = 2 sin^2(t) dt.
     """
     beta = 2 * math.atan2(math.sqrt(fill), math.sqrt(1 - fill))
     angle = beta / 2 * (1 + _NODES)
     across = np.sin(angle)
     strip = beta * _WEIGHTS * across**2
     area = float(strip.sum())
-    depth = 2 * np.sin(angle / 2) ** 2  # 1 - cos(angle): below the top of the circle
-    centroid = float(strip @ depth) / area
-    inertia = float(strip @ (across**2 / 3 + (depth - centroid) ** 2)) / area
+    # The height of a strip above the bottom, 1 - cos(angle), in a form without cancellation.
+    height = 2 * np.sin(angle / 2) ** 2
+    centroid = float(strip @ height) / area
+    inertia = float(strip @ (across**2 / 3 + (height - centroid) ** 2)) / area
     mass = BEER * LENGTH * RADIUS**2 * area
     return _Segment(fill, beta, area, 1 - centroid, inertia, mass)
 
 
 @cache
 def _shell() -> SimpleNamespace:
-    """Return mass [kg] and axial inertia [kg m^2] of a can of sheet metal by MuJoCo."""
+    """Return mass [kg] and axial inertia [kg m^2] of a can of sheet metal, by MuJoCo."""
     spec = mujoco.MjSpec()
     spec.worldbody.add_body(name="can").add_geom(
         type=mujoco.mjtGeom.mjGEOM_CYLINDER,
@@ -97,7 +102,7 @@ def _shell() -> SimpleNamespace:
 
 
 def _centre_of_mass() -> SimpleNamespace:
-    """Return how far the common centre of mass is from the axis [m], and what (38) names."""
+    """Return the distance of the common centre of mass from the axis [m], and what (38) names."""
     scene = sliding(can=Can.sheet_metal())
     model = build(scene, "equality")
     data = mujoco.MjData(model)
@@ -113,6 +118,7 @@ def _centre_of_mass() -> SimpleNamespace:
 
 
 def _by_quadrature(*fills: float) -> Witness:
+    """Return the witness of segments of some fills."""
     return Witness("segment quadrature", partial(_segments, *fills))
 
 
@@ -181,8 +187,8 @@ CLAIMS = (
     Claim(
         "(35)", "b, last form", _FILLED, _CLOSED, residual=f"4*sin(beta)**3/(3*{_TWICE_AREA}) - b"
     ),
-    Claim("(36)", "I_axis, second line", _FILLED, _CLOSED, residual=_SECOND_36 + _AXIAL),
-    Claim("(36)", "I_axis, last form", _FILLED, _CLOSED, residual=_LAST_36 + _AXIAL),
+    Claim("(36)", "I_axis, second line", _FILLED, _CLOSED, residual=_SECOND_36 + _LESS_AXIAL),
+    Claim("(36)", "I_axis, last form", _FILLED, _CLOSED, residual=_LAST_36 + _LESS_AXIAL),
     Claim(
         "(37)",
         "I_cm",
@@ -195,10 +201,10 @@ CLAIMS = (
         "I_axis, third line: sin(2 beta) sin^2(beta)/4; printed /8",
         _FILLED,
         _CLOSED,
-        residual=_THIRD_36.format(4) + _AXIAL,
+        residual=_THIRD_36.format(4) + _LESS_AXIAL,
         misprint=Misprint(
             0.23,
-            wrong=_THIRD_36.format(8) + _AXIAL,
+            wrong=_THIRD_36.format(8) + _LESS_AXIAL,
             about="The beer's inertia about the can's axis, third line",
             latex=r"\frac{2\rho_{\text{beer}}a^4l}{3}\Bigl(\frac{3\beta}{4}-\frac{3\sin2\beta}{8}"
             r"+\frac{\sin2\beta\,\sin^2\!\beta}{<8|4>}\Bigr)",
@@ -216,7 +222,7 @@ CLAIMS = (
         "k is 1/2 at beta = pi/2 and at pi",
         _by_quadrature(0.5, 1.0),
         _CLOSED,
-        residual="0.5" + _AXIAL,
+        residual="0.5" + _LESS_AXIAL,
         quote="k decreases from 1 … to 1/2 at β = π/2 …, then dips slightly and returns to k = 1/2 "
         "at β = π",
     ),
@@ -225,7 +231,7 @@ CLAIMS = (
         "k is 1 for a film (fill 1e-5)",
         _by_quadrature(1e-5),
         Bound(1e-4, "the film's height"),
-        residual="1" + _AXIAL,
+        residual="1" + _LESS_AXIAL,
         quote="decreases from 1 (for a point mass at distance a from the axis)",
     ),
     Claim(

@@ -17,7 +17,7 @@ from mjbeer.paper.witness import (
     simulated,
 )
 from mjbeer.theory.can import Can
-from mjbeer.theory.scene import sliding
+from mjbeer.theory.paper_scenes import sliding
 
 EQ_6 = "m*b*g*cos(alpha)/inertia"
 """omega^2 [1/s^2] of small swings."""
@@ -30,20 +30,22 @@ KINETIC_11 = "m*s_dot**2/2 + m*b**2*sin(phi)**2*phi_dot**2/2 + inertia*phi_dot**
 """T [J] of the beer in any can, also the second line of eq. (44)."""
 POTENTIAL_14 = "- m*g*s*sin(alpha) - m*g*b*cos(alpha)*cos(phi)"
 POTENTIAL_17 = "- m*g*u*sin(alpha) - m*g*b*cos(theta)"
-"""V [J] of the beer in s and phi, and in u and theta, which (20) and (45) have too."""
+"""V [J] of the beer in s and phi, and in u and theta, as also in eqs. (20) and (45)."""
 _EQ_19 = "a**2/2*phi_ddot - b*cos(phi)*u_ddot + {}*b*sin(theta)"
+"""Eqs. (19) and (22); the gap is for g, which the paper does not print."""
 _TORQUE = "m*g*cos(alpha)*(u - s)"
-"""Torque of gravity about C [N m], clockwise, with the lever arm of MuJoCo's positions."""
+"""Clockwise torque of gravity about C [N m]; its lever arm u - s is from MuJoCo's positions."""
 _TURNS_ABOUT_C = "across_dot - phi_dot*(u - s)"
 """The centre of mass moves across the incline at phi_dot (u - s) [m/s]."""
 
-# 1e-3 of its load's mass.
+# This can has a thousandth of the mass of its load.
 _LIGHT_CAN = simulated(sliding(can=Can.sheet_metal(thickness=2.5e-6)), 2.0)
 _LEVEL = simulated(sliding(0.0), 2.0)
 _SMALL_SWING = Witness(REDUCED, partial(oscillate, sliding(), SMALL))
 
 
 def _cylinder(k: float) -> Claim:
+    """Return the claim of footnote 2 about a cylinder of inertia k m a^2."""
     return Claim(
         "footnote 2",
         f"a cylinder of inertia {k:g} m a^2 has g sin(alpha)/(1 + k)",

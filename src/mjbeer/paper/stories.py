@@ -19,15 +19,15 @@ from mjbeer.output.jobs import Job
 from mjbeer.output.plots import chart
 from mjbeer.paper import story_plots
 from mjbeer.paper.story_plots import SWING
-from mjbeer.theory.scene import frozen, sliding
+from mjbeer.theory.paper_scenes import frozen, sliding
 
 SIZE = (768, 432, 25)
-"""Width and height [pixels] and pictures per second of a film: a page shows it 768 pixels wide,
-or less."""
+"""Width and height [pixels] and pictures per second of a film; a page shows it at most 768 pixels
+wide."""
 
 
 class PlotSize(NamedTuple):
-    """The panels of a plot, and how large it is."""
+    """The rows and columns of a plot's panels, and the size of the whole."""
 
     rows: int
     columns: int
@@ -42,15 +42,15 @@ class Story:
     """A scenario of the paper."""
 
     name: str
-    """Name of its files, without an ending."""
+    """The name of its files, without an ending."""
     title: str
     subtitle: str
-    """Of which scene the plot is."""
+    """The scene of the plot, in words."""
     caption: str
     """What the plot and the film show."""
     size: PlotSize
     draw: Callable[[Sequence[Axes]], None]
-    """Draws into the panels."""
+    """Draws the curves into the panels."""
     film: Film | None = None
 
     def plot(self, path: pathlib.Path) -> None:
@@ -158,10 +158,10 @@ STORIES = (
         "roll-down",
         "Frozen beer let go on top rolls down in jerks",
         f"{in_words(frozen())}; let go at φ = 180°",
-        "A half-full can, let go with its frozen beer on top: as in the figure of A.3, whose load "
-        "has b = a/3. It rolls down in jerks, a little faster than a solid cylinder. From 0.834 s "
-        "on the incline would have to pull the can for it to keep rolling. What comes after that "
-        "is dotted.",
+        "A half-full can is let go with its frozen beer on top, as in the figure of A.3 (where "
+        "b = a/3; here b = 0.42 a). It rolls down in jerks, a little faster than a solid cylinder. "
+        "From 0.834 s on the incline would have to pull the can for it to keep rolling. What comes "
+        "after that is dotted.",
         PlotSize(2, 1, 6, 6.2),
         story_plots.draw_roll_down,
     ),
@@ -169,9 +169,10 @@ STORIES = (
         "slip-and-hop",
         "On an incline with μ = 1, the can slips before it hops",
         f"{in_words(frozen())}; let go at φ = 180°",
-        "The same can on an incline with μ = 1. Rolling needs more and more friction. At 0.72 s it "
-        "needs more than there is, and the can slips by less than a millimetre. At 0.83 s the can "
-        "begins to slip far, and then it hops, 7 mm high.",
+        "A half-full can is let go with its frozen beer on top, on an incline with μ = 1. Rolling "
+        "needs more and more friction. At 0.72 s it needs more than there is, and the can slips by "
+        "less than a millimetre. At 0.83 s the can begins to slip far, and then it hops, 7 mm "
+        "high.",
         PlotSize(2, 1, 6, 6.2),
         story_plots.draw_slip_and_hop,
         MotionFilm(
@@ -226,14 +227,15 @@ def write(folder: pathlib.Path, filmed: bool, console: Console) -> str:
       OutputError: if the folder cannot be written to.
       RenderingError: if a film cannot be drawn for another reason, as without ffmpeg.
     """
-    orders = films(folder) if filmed else []
+    film_jobs = films(folder) if filmed else []
     missing = ""
-    if orders and opengl.problem():
-        missing = opengl.missing_films_message([order.path.name for order in orders])
+    if film_jobs and opengl.problem():
+        missing = opengl.missing_films_message([film.path.name for film in film_jobs])
+        film_jobs = []
     files.write(folder / "letters.svg", letters())
     plots = [PlotJob(story.plot, folder / story.name) for story in STORIES]
-    drawn = plots if missing else [*orders, *plots]
-    jobs.run_jobs([Job(order.path.name, order.write) for order in drawn], console)
+    drawings = [*film_jobs, *plots]
+    jobs.run_jobs([Job(drawing.path.name, drawing.write) for drawing in drawings], console)
     lines = ["# The paper's stories", "", "![The letters of the formulas](letters.svg)", ""]
     if missing:
         lines += [f"Films: {missing}", ""]

@@ -26,28 +26,29 @@ from mjbeer.paper.hopping import MU
 from mjbeer.paper.oscillation import SLOW
 from mjbeer.paper.witness import GRIP, loop
 from mjbeer.simulation.simulate import simulate
-from mjbeer.theory.scene import Scene, frozen, sliding
+from mjbeer.theory.paper_scenes import frozen, sliding
+from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory, exact
 
 SWING = math.radians(60)
-"""Amplitude [rad] of the swing that shows the hesitation: so wide that the can slows down."""
+"""Amplitude [rad] of the swing that shows the hesitation: wide enough for the can to slow down."""
 FRICTION = 1.0
 """Friction coefficient of the incline from which the can lifts off."""
 HESITATION = partial(
     simulate, sliding(), 0.8, SWING, integrator="DOP853", times=np.linspace(0, 0.8, 401)
 )
 LOOPING = partial(simulate, sliding(), 0.5, 0.0, SLOW, integrator="DOP853")
-"""The motion of a film: beer loops so slowly here that its can stays on the incline."""
+"""The motion of a film: the beer loops slowly enough for its can to stay on the incline."""
 ROCKING = partial(simulate, frozen(), 2.0, 0.0, integrator="DOP853")
 LIFT_OFF = partial(
     simulate, frozen(), 1.0, math.pi, rolling="contact", timestep=2e-4, friction=FRICTION
 )
 PARTING = partial(LIFT_OFF, times=np.linspace(0.68, 1.0, 1601))
 _PRINTED: dict[str, Any] = {"color": COLOURS[1], "linestyle": "--"}
-"""The line of an equation as the paper prints it where that is wrong."""
+"""The style of an equation that the paper prints wrong."""
 _JUMP = 3.0
-"""Change of an angle [degrees] from one point to the next, beyond which a line breaks off:
-elsewhere it is below 1."""
+"""Change of an angle [degrees] from point to point at which a line breaks off; elsewhere it is
+below 1."""
 _TIME = "time t [s]"
 _TILT = "φ, the angle of the beer's surface to the incline"
 
@@ -89,11 +90,11 @@ def draw_hesitation(panels: Sequence[Axes]) -> None:
     run = HESITATION()
     scene = run.scene
     times = run.time
-    b = scene.load.offset
     even = scene.acceleration() * times**2 / 2
-    # The paper's swing begins at phi = 0, this one at its end: a quarter of a swing later, cos(2
-    # omega t) is -1.
-    printed = b * (-(SWING**2) / 4 - SWING**2 * np.cos(2 * scene.frequency() * times) / 2)
+    # The paper's swing begins at phi = 0, this one a quarter of a swing later, at its largest phi:
+    # there cos(2 omega t) has the opposite sign.
+    amplitude = scene.load.offset * SWING**2 / 2
+    printed = -amplitude / 2 - amplitude * np.cos(2 * scene.frequency() * times)
     (axes,) = panels
     axes.plot(
         times, 1e3 * (exact(scene, times, SWING).u - even), label="exact theory: b sin φ", **THEORY
@@ -149,14 +150,15 @@ def footnote_8_as_printed(scene: Scene, times: np.ndarray, phi0: float) -> np.nd
     def slope(_: float, state: np.ndarray) -> list[float]:
         phi, phi_dot = state
         without = residual(phi, phi_dot, 0.0)
-        phi_ddot = without / (without - residual(phi, phi_dot, 1.0))  # the equation is linear in it
+        # The residual is linear in phi_ddot.
+        phi_ddot = without / (without - residual(phi, phi_dot, 1.0))
         return [phi_dot, phi_ddot]
 
     return solve_ivp(slope, (0, times[-1]), [phi0, 0.0], t_eval=times, rtol=1e-10, atol=1e-12).y[0]
 
 
 def draw_rocking(panels: Sequence[Axes]) -> None:
-    """Draw how frozen beer rocks, by MuJoCo and by footnote 8, and how far each is from theory."""
+    """Draw how frozen beer rocks by MuJoCo and by footnote 8, and the distance from theory."""
     run = ROCKING()
     scene = run.scene
     times = run.time
@@ -177,7 +179,7 @@ def draw_rocking(panels: Sequence[Axes]) -> None:
 
 
 def draw_roll_down(panels: Sequence[Axes]) -> None:
-    """Draw the roll-down of frozen beer: how far it turns, and the normal force."""
+    """Draw the roll-down of frozen beer: its angle and the normal force."""
     times = np.linspace(0, 1, 1001)
     run = simulate(frozen(), times[-1], math.pi, integrator="DOP853", times=times)
     scene = run.scene
@@ -243,9 +245,9 @@ def draw_slip_and_hop(panels: Sequence[Axes]) -> None:
 
 
 def skids(ratios: np.ndarray, mu: float) -> np.ndarray:
-    """Return the angles from the top [degrees] at which hoops of ratios M/m skid.
+    """Return the angles from the top [degrees] at which hoops of the `ratios` M/m skid.
 
-    Where the angle jumps there is a gap (NaN).
+    An angle is NaN where it has jumped, so that the line has a gap there.
     """
     angles = np.degrees([hopping.slip(float(ratio), mu) for ratio in ratios])
     angles[1:][np.abs(np.diff(angles)) > _JUMP] = math.nan
@@ -253,15 +255,14 @@ def skids(ratios: np.ndarray, mu: float) -> np.ndarray:
 
 
 def draw_lift_off(panels: Sequence[Axes]) -> None:
-    """Draw where a hoop lifts off and where it skids, over its mass."""
-    # The angle of lift-off rises like a square root just below 1/13, so that the points are denser
-    # there.
-    ratios = np.unique(
-        np.append(np.geomspace(1e-3, 0.07, 300), 1 / 13 * (1 - np.geomspace(0.1, 1e-6, 20)))
-    )
+    """Draw the angles at which a hoop lifts off and skids, against its mass."""
+    most = np.geomspace(1e-3, 0.07, 300)
+    # Just below 1/13 the angle of lift-off rises like a square root, and needs denser points.
+    last = 1 / 13 * (1 - np.geomspace(0.1, 1e-6, 20))
+    ratios = np.unique(np.append(most, last))
     few = np.array([2e-3, 8e-3, 0.03, 0.06])
-    found = [hopping.takeoff(hopping.fall(float(ratio), GRIP, 5e-5)) for ratio in few]
-    measured = [math.nan if angle is None else math.degrees(angle) for angle in found]
+    simulated = [hopping.takeoff(hopping.fall(float(ratio), GRIP, 5e-5)) for ratio in few]
+    measured = [math.nan if angle is None else math.degrees(angle) for angle in simulated]
     lifts = [math.degrees(hopping.lift_off(float(ratio))) for ratio in ratios]
     (axes,) = panels
     axes.plot(ratios, lifts, color=COLOURS[0], label="lifts off if it cannot skid, theory")

@@ -1,4 +1,4 @@
-"""MuJoCo as a witness: its forward dynamics along a motion; and motions that claims share."""
+"""MuJoCo as a witness: its forward dynamics along a motion, and the motions that claims share."""
 
 import math
 from functools import cache, partial
@@ -14,14 +14,16 @@ from mjbeer.paper.claim import Bound, Observation, Witness
 from mjbeer.simulation.run import Run
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import Can, Load
-from mjbeer.theory.scene import Scene, frozen, pendulum, sliding
+from mjbeer.theory.paper_scenes import frozen, pendulum, sliding
+from mjbeer.theory.scene import Scene
 
 
 def simulated(scene: Scene, phi0: float, *more: Any, **settings: Any) -> Witness:
     """Return the witness of a motion; the arguments are those of `watch`.
 
-    Unless told otherwise the can is rolled by a constraint between two joints: that model contains
-    none of the paper's theory. A massless can around a sliding load is beyond it, and is reduced.
+    By default a constraint between two joints makes the can roll, since that model contains none of
+    the paper's theory. It cannot have a massless can with a sliding load, for which the default is
+    the reduced model.
     """
     settings.setdefault("rolling", "equality" if supported(scene, "equality") else "reduced")
     return Witness(f"MuJoCo, {settings['rolling']}", partial(watch, scene, phi0, *more, **settings))
@@ -38,14 +40,14 @@ def watch(
     integrator: Integrator = "DOP853",
     timestep: float = 5e-4,
 ) -> Observation:
-    """Return what MuJoCo computes at evenly spaced samples of a motion it simulates.
+    """Simulate a motion, and return what MuJoCo computes at evenly spaced samples of it.
 
-    Coordinates are those of Fig. 3: `s` is read from the position of the load's centre of mass,
-    `across` is how far it is from the axis, away from the incline, and `height` how far above where
-    the axis starts. `theta` [rad] is the angle between gravity and the line from the axis to it.
-    Accelerations are those of mj_forward; `kinetic` and `potential` are energies of the whole [J],
-    and `friction` is the force [N] of the incline on the can, uphill, where a constraint makes it
-    roll, otherwise 0.
+    Coordinates are those of Fig. 3. The load's centre of mass is at `s` along the incline; it is at
+    the distance `across` from the axis, away from the incline, and at `height` above the place
+    where the axis starts [m]. `theta` [rad] is the angle between gravity and the line from the axis
+    to it. Accelerations are those of mj_forward, and `kinetic` and `potential` are energies of can
+    and load [J]. `friction` is the force of the incline on the can, uphill [N]; it is 0 unless a
+    constraint makes the can roll.
     """
     times = np.linspace(0, duration, samples)
     run = simulate(scene, duration, phi0, phi_dot0, rolling, integrator, timestep, times=times)
@@ -53,7 +55,9 @@ def watch(
     data = mujoco.MjData(model)
     joints = joint_addresses(model)
     can = model.body("can").id
-    carrier = model.body("load").id if "swing" in joints else can  # the body that has the load
+    # A frozen load belongs to the body of the can.
+    carrier = model.body("load").id if "swing" in joints else can
+    # Of axis and load: position, velocity and acceleration, each with three components.
     axis = np.empty((samples, 3, 3))
     load = np.empty((samples, 3, 3))
     phi_dot = np.zeros(samples)
@@ -69,17 +73,19 @@ def watch(
         centre = data.xpos[carrier] - data.xmat[carrier].reshape(3, 3)[:, 2] * scene.load.offset
         axis[k] = _point_motion(model, data, data.xpos[can].copy(), can)
         load[k] = _point_motion(model, data, centre, carrier)
-        turn = np.zeros((3, model.nv))
-        mujoco.mj_jac(model, data, None, turn, data.xpos[carrier], carrier)
-        phi_dot[k] = turn[1] @ data.qvel
-        phi_ddot[k] = turn[1] @ data.qacc
+        rotation = np.zeros((3, model.nv))
+        mujoco.mj_jac(model, data, None, rotation, data.xpos[carrier], carrier)
+        phi_dot[k] = rotation[1] @ data.qvel
+        phi_ddot[k] = rotation[1] @ data.qacc
         potential[k], kinetic[k] = data.energy
         if "slide" in joints:
             friction[k] = -data.qfrc_constraint[model.joint("slide").dofadr[0]]
     down = model.opt.gravity / scene.gravity
-    downhill = np.array([-down[2], 0, down[0]])  # a quarter turn from gravity
+    # A quarter turn from gravity.
+    forward = np.array([-down[2], 0, down[0]])
     arm = load[:, 0] - axis[:, 0]
-    start = axis[0, 0, 2]  # the height at which the axis starts, in the model
+    # The height at which the axis starts, in the coordinates of the model.
+    start = axis[0, 0, 2]
     s, s_dot, s_ddot = load[:, :, 0].T
     u, u_dot, u_ddot = axis[:, :, 0].T
     across, across_dot, across_ddot = (load - axis)[:, :, 2].T
@@ -98,7 +104,7 @@ def watch(
         phi=run.phi,
         phi_dot=phi_dot,
         phi_ddot=phi_ddot,
-        theta=np.arctan2(-arm @ downhill, arm @ down),
+        theta=np.arctan2(-arm @ forward, arm @ down),
         height=-(load[:, 0] - [0, 0, start]) @ down,
         kinetic=kinetic,
         potential=potential + scene.mass * model.opt.gravity[2] * start,
@@ -111,17 +117,19 @@ def _point_motion(
 ) -> np.ndarray:
     """Return position, velocity and acceleration of a point of a body, shape (3, 3)."""
     jacobian = np.zeros((3, model.nv))
-    change = np.zeros((3, model.nv))
+    jacobian_dot = np.zeros((3, model.nv))
     mujoco.mj_jac(model, data, jacobian, None, point, body)
-    mujoco.mj_jacDot(model, data, change, None, point, body)
-    return np.stack([point, jacobian @ data.qvel, jacobian @ data.qacc + change @ data.qvel])
+    mujoco.mj_jacDot(model, data, jacobian_dot, None, point, body)
+    velocity = jacobian @ data.qvel
+    acceleration = jacobian @ data.qacc + jacobian_dot @ data.qvel
+    return np.stack([point, velocity, acceleration])
 
 
 @cache
 def oscillate(
     scene: Scene, phi0: float, duration: float = 4.0, rolling: Rolling = "reduced"
 ) -> Observation:
-    """Return the frequency `omega` [rad/s] and the `rest` [rad] of a swing in 4000 steps."""
+    """Simulate a swing in 4000 steps; return its `omega` [rad/s] and equilibrium `rest` [rad]."""
     run = simulate(
         scene, duration, phi0, rolling=rolling, integrator="DOP853", timestep=duration / 4000
     )
@@ -129,7 +137,7 @@ def oscillate(
 
 
 def footnote_scene(part: float = 1.0) -> Scene:
-    """Return the scene of footnote 8, with `part` of its b.
+    """Return the scene of footnote 8, with b multiplied by `part`.
 
     It has a = 3 cm, b = 1 cm, alpha = 10 degrees, g = 980 cm/s^2 and I_axis = m a^2/2.
     """
@@ -171,8 +179,8 @@ _SAMPLES = 256  # samples of one turn; ripples up to the 128th multiple of the r
 def loop(scene: Scene, phi_dot0: float) -> Observation:
     """Simulate one turn of a load that loops from phi = 0 with `phi_dot0` [rad/s].
 
-    Its mean rate is `Omega` [rad/s]. `ripple` has the amplitudes [rad] of sin(k Omega t) in phi -
-    Omega t, at index k, and `sway` those [m] in u less its steady acceleration.
+    The mean rate is `Omega` [rad/s]. At index k, `ripple` has the amplitude [rad] of sin(k Omega t)
+    in phi - Omega t, and `sway` that [m] in u less the distance due to the steady acceleration.
     """
     turn = 2 * math.pi / phi_dot0
     for _ in range(8):  # Newton's method for the time of a turn
@@ -187,12 +195,12 @@ def loop(scene: Scene, phi_dot0: float) -> Observation:
 
 
 def _one_turn(scene: Scene, turn: float, phi_dot0: float, times: np.ndarray) -> Run:
-    """Return a turn of a load, of about `turn` [s], at some times [s]."""
+    """Return a motion of the duration `turn` [s] from phi = 0, at some times [s]."""
     return simulate(
         scene, turn, 0.0, phi_dot0, integrator="DOP853", timestep=turn / 64, times=times
     )
 
 
 def sines(values: np.ndarray) -> np.ndarray:
-    """Return the amplitudes of sin(2 pi k x), at index k, in values over one period of x."""
+    """Return the amplitudes of sin(2 pi k x), at index k, in values at x from 0 to 1."""
     return -np.fft.rfft(values).imag * 2 / len(values)

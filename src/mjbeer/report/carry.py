@@ -17,7 +17,7 @@ from mjbeer.drawing.strip import Chart, ChartStrip, Line
 from mjbeer.model.attach import surface_slope
 from mjbeer.model.build import build
 from mjbeer.model.looks import WALL
-from mjbeer.theory.scene import sliding
+from mjbeer.theory.paper_scenes import sliding
 from mjbeer.theory.standing import QUANTITATIVE, Standing, standing
 
 _TIMESTEP = 5e-4

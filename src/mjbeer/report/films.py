@@ -15,7 +15,8 @@ from mjbeer.report.carry import Carry
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import Can
 from mjbeer.theory.liquid import liquid
-from mjbeer.theory.scene import Scene, frozen, hoop, pendulum, sliding
+from mjbeer.theory.paper_scenes import frozen, hoop, pendulum, sliding
+from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
 
 METAL = Can.sheet_metal()

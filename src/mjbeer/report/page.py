@@ -1,6 +1,6 @@
-"""The report: one page that opens from the disk and fetches nothing.
+"""The report: one page that opens from the disk and loads nothing from elsewhere.
 
-More maps and a race to play lie beside it.
+Beside the page lie more maps and a race to play.
 """
 
 import base64
@@ -9,7 +9,7 @@ import pathlib
 import re
 import tempfile
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
@@ -20,12 +20,15 @@ from markupsafe import Markup, escape
 from rich.console import Console
 
 from mjbeer import paper
+from mjbeer.checks.check import Result
 from mjbeer.drawing import opengl
 from mjbeer.drawing.video import PlotJob
 from mjbeer.output import files, jobs
 from mjbeer.output.jobs import Job
 from mjbeer.output.plots import Picture
+from mjbeer.output.terminal import Table
 from mjbeer.paper import stories
+from mjbeer.paper.claim import Claim
 from mjbeer.report import films
 from mjbeer.studies.benchmark import benchmark_tables, work_precision
 from mjbeer.studies.benchmark.points import SHIPPED, Benchmark
@@ -34,20 +37,21 @@ from mjbeer.studies.study import machine
 from mjbeer.studies.validation.validate import Validation, validate
 
 _HERE = pathlib.Path(__file__).parent
-_LIVE = (_HERE / "web" / "live.html", _HERE.parents[2] / "docs" / "live.html")
-"""Where the race to play is, in a wheel and in a checkout."""
+_LIVE_OF_WHEEL = _HERE / "web" / "live.html"
+_LIVE_OF_CHECKOUT = _HERE.parents[2] / "docs" / "live.html"
+"""The race to play, as it is installed from a wheel and in a checkout."""
 _MAP = "stability-solref"
 """The map on the page; the others lie beside it."""
 _MATHML = {
     'display="block"': 'display="inline" displaystyle="true"',
     'mathcolor="differs"': 'class="differs"',
-    # So that the style can set them apart from the letters around.
+    # The class lets the style set functions apart from the letters around them.
     "<mi>sin</mi>": '<mi class="function">sin</mi>',
     "<mi>cos</mi>": '<mi class="function">cos</mi>',
-    # A name of MathML 2, which browsers no longer know.
+    # MathML 2 had this width, and browsers no longer know it.
     '<mspace width="negativethinmathspace" />': "",
 }
-"""What is replaced in the MathML of latex2mathml."""
+"""The replacements in the MathML of latex2mathml."""
 _GREEK = r"(?<![A-Za-z])(alpha|beta|delta|epsilon|theta|mu|pi|phi|omega|Omega)(?![A-Za-z])"
 _RAISED = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 
@@ -61,72 +65,121 @@ class ShownFilm(NamedTuple):
     """A picture of it, as WebP."""
 
 
-def write(folder: pathlib.Path, quick: bool, console: Console) -> tuple[Validation, str]:
-    """Write index.html, live.html and the maps that lie beside it into a folder.
+class _Audit(NamedTuple):
+    """The section about the paper's claims."""
 
-    Quickly, the films are smaller and the stories have plots and no films. Where there is no
-    OpenGL, there are no films. What comes back is the validation, and the line that says which
-    films are missing, or "".
+    misprints: list[tuple[Result, Claim]]
+    """Each misprint of the paper, as measured."""
+    kinds: Counter[str]
+    """How many misprints there are of each kind."""
+    quoted: list[Claim]
+    """The other claims that rest on the paper's own words."""
+
+
+class _Errors(NamedTuple):
+    """The section about error against run time."""
+
+    benchmark: Benchmark
+    plots: list[Picture]
+    tables: list[Table]
+    ratio_range: Callable[[str, float], str]
+    """Tells how many times as long a setting takes as the best, at an error [rad]."""
+
+
+class _Stability(NamedTuple):
+    """The section about where runs explode."""
+
+    maps: stability_maps.StoredMaps
+    families: Mapping[str, stability_maps.Family]
+    map: Picture
+    """The map on the page."""
+    runs: int
+    """How many short runs all maps have."""
+    border: float
+    """Largest relative distance of a measured border from the one of linear theory."""
+
+
+def write(folder: pathlib.Path, quick: bool, console: Console) -> tuple[Validation, str]:
+    """Write index.html, live.html and the maps that lie beside them into a folder.
+
+    A `quick` report has smaller films, and stories with plots alone. Where OpenGL does not work,
+    there are no films. Return the validation, and the line that says which films are missing, or
+    "".
 
     Raises:
       OutputError: if the folder cannot be written to.
       RenderingError: if a film cannot be drawn for another reason.
     """
     with tempfile.TemporaryDirectory() as work:
-        filmed = films.film_jobs(pathlib.Path(work), quick)
+        film_jobs = films.film_jobs(pathlib.Path(work), quick)
         not_drawn = ""
         if opengl.problem():
-            not_drawn = opengl.missing_films_message([job.path.stem for job in filmed])
-            filmed = []
-        # The checks take longest, and compile what the films run; plots are quick.
+            not_drawn = opengl.missing_films_message([job.path.stem for job in film_jobs])
+            film_jobs = []
+        # The checks come first: they take longest, and compile what the films run.
         checks = Job("the checks", partial(validate, None))
-        drawn = [Job(job.path.name, job.write) for job in (*filmed, *plot_jobs(folder))]
-        validation, *made = jobs.run_jobs([checks, *drawn], console)
-        stills = made[: len(filmed)]
-        plots = made[len(filmed) :]
-        shown = {
+        drawings = [Job(job.path.name, job.write) for job in (*film_jobs, *plot_jobs(folder))]
+        validation, *drawn = jobs.run_jobs([checks, *drawings], console)
+        stills = drawn[: len(film_jobs)]
+        plots = drawn[len(film_jobs) :]
+        shown_films = {
             job.path.stem: ShownFilm(job.path.read_bytes(), still)
-            for job, still in zip(filmed, stills, strict=True)
+            for job, still in zip(film_jobs, stills, strict=True)
         }
+        # A plot that went into a file of its own is None here.
         pictures = {plot.name: plot for plot in plots if plot}
-        live = next(path for path in _LIVE if path.is_file())
+        live = _LIVE_OF_WHEEL if _LIVE_OF_WHEEL.is_file() else _LIVE_OF_CHECKOUT
         files.write(folder / "live.html", live.read_text(encoding="utf-8"))
-        files.write(folder / "index.html", page(validation, shown, pictures, quick, not_drawn))
+        text = page(validation, shown_films, pictures, quick, not_drawn)
+        files.write(folder / "index.html", text)
     return validation, not_drawn
 
 
 def plot_jobs(folder: pathlib.Path) -> list[PlotJob]:
-    """Return the plots of the page; the maps that lie beside it are drawn into a folder."""
+    """Return the jobs for the plots of the page, and for the maps beside it, in a folder."""
     benchmark = Benchmark.load(SHIPPED)
-    jobs = []
+    plots = []
     for case in benchmark.cases:
         of_case = replace(benchmark, points=benchmark.of(case))
         draw = partial(work_precision.draw, of_case)
-        jobs.append(PlotJob(draw, folder / f"error-{case}", in_memory=True))
+        plots.append(PlotJob(draw, folder / f"error-{case}", in_memory=True))
     for story in stories.STORIES:
-        jobs.append(PlotJob(story.plot, folder / story.name, in_memory=True))
+        plots.append(PlotJob(story.plot, folder / story.name, in_memory=True))
     for name, draw in stability_maps.figures(stability_maps.load()).items():
-        jobs.append(PlotJob(draw, folder / name, in_memory=name == _MAP))
-    return jobs
+        plots.append(PlotJob(draw, folder / name, in_memory=name == _MAP))
+    return plots
 
 
 def page(
     validation: Validation,
-    drawn: Mapping[str, ShownFilm],
+    shown_films: Mapping[str, ShownFilm],
     plots: Mapping[str, Picture],
     quick: bool,
     not_drawn: str,
 ) -> str:
-    """Return the page as HTML, with plots and `drawn` films by their names.
+    """Return the page as HTML, with films and plots by their names.
 
     `not_drawn` says why films are missing, or is "".
     """
     loader = PackageLoader("mjbeer.report", "web")
     environment = Environment(loader=loader, autoescape=True, undefined=StrictUndefined)
     environment.filters |= {"mathml": mathml, "share": share, "marked": _marked, "data": _data}
-    benchmark = Benchmark.load(SHIPPED)
-    maps = stability_maps.load()
-    runs, border = stability_maps.summary(maps.maps)
+    return environment.get_template("page.html").render(
+        validation=validation,
+        audit=_audit(validation),
+        films=films,
+        shown_films=shown_films,
+        not_drawn=not_drawn,
+        errors=_errors(plots),
+        stability=_stability(plots),
+        stories=stories,
+        plots=plots,
+        machine=machine(),
+        quick=quick,
+    )
+
+
+def _audit(validation: Validation) -> _Audit:
     claims = paper.claims()
     misprinted = {(claim.equation, claim.quantity): claim for claim in claims if claim.misprint}
     misprints = [
@@ -134,28 +187,25 @@ def page(
         for result in validation.audit
         if (result.group, result.name) in misprinted
     ]
-    return environment.get_template("page.html").render(
-        films=films,
-        drawn=drawn,
-        not_drawn=not_drawn,
-        errors=[plots[f"error-{case}"] for case in benchmark.cases],
-        benchmark=benchmark,
-        costs=benchmark_tables.tables(benchmark),
+    kinds = Counter(claim.misprint.kind for _, claim in misprints if claim.misprint)
+    quoted = [claim for claim in claims if claim.quote and not claim.misprint]
+    return _Audit(misprints, kinds, quoted)
+
+
+def _errors(plots: Mapping[str, Picture]) -> _Errors:
+    benchmark = Benchmark.load(SHIPPED)
+    return _Errors(
+        benchmark,
+        plots=[plots[f"error-{case}"] for case in benchmark.cases],
+        tables=benchmark_tables.tables(benchmark),
         ratio_range=partial(benchmark_tables.ratio_range, benchmark),
-        maps=maps,
-        map=plots[_MAP],
-        families=stability_maps.FAMILIES,
-        runs=runs,
-        border=border,
-        misprints=misprints,
-        kinds=Counter(claim.misprint.kind for _, claim in misprints if claim.misprint),
-        quoted=[claim for claim in claims if claim.quote and not claim.misprint],
-        stories=stories,
-        plots=plots,
-        validation=validation,
-        machine=machine(),
-        quick=quick,
     )
+
+
+def _stability(plots: Mapping[str, Picture]) -> _Stability:
+    maps = stability_maps.load()
+    runs, border = stability_maps.summary(maps.maps)
+    return _Stability(maps, stability_maps.FAMILIES, plots[_MAP], runs, border)
 
 
 def share(value: float) -> Markup:

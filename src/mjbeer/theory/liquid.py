@@ -39,7 +39,8 @@ from mjbeer import require
 from mjbeer.exceptions import LiquidWarning, NoEquilibriumError, ParameterError, warn_of_liquid
 from mjbeer.theory import slosh
 from mjbeer.theory.can import Can, Damping, Load
-from mjbeer.theory.scene import GRAVITY, INCLINE, Scene, remembers_call, sliding
+from mjbeer.theory.paper_scenes import remembers_call, sliding
+from mjbeer.theory.scene import GRAVITY, INCLINE, Scene
 from mjbeer.theory.segment import segment
 
 Name = Literal["water", "beer", "olive oil", "glycerol", "honey"]

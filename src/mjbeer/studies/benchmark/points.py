@@ -4,15 +4,16 @@ import json
 import math
 import pathlib
 from collections.abc import Iterable, Sequence
-from dataclasses import asdict, dataclass, field, replace
-from typing import Any, NamedTuple
+from dataclasses import asdict, dataclass, field
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
 from mjbeer.checks.as_json import document
 from mjbeer.model.setting import Rolling
 from mjbeer.theory.can import Can
-from mjbeer.theory.scene import Scene, frozen, pendulum, sliding
+from mjbeer.theory.paper_scenes import frozen, pendulum, sliding
+from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory, exact
 
 COMMAND = "mjbeer benchmark"
@@ -143,9 +144,17 @@ class Point:
             return f"{self.method} to {self.value:g}".strip()
         return f"{self.method} {milliseconds(self.value)}"
 
-    def of_round(self, number: int) -> "Point":
-        """Return the point as if it had been timed in one round only."""
-        return replace(self, times=[self.times[number]])
+
+class Timing(NamedTuple):
+    """A point as it was timed in one round."""
+
+    error: float
+    """Largest error of phi and u/a over the run [rad]."""
+    time: float
+    """Run time [s]."""
+
+
+Timed = TypeVar("Timed", Point, Timing)
 
 
 def milliseconds(time: float) -> str:
@@ -214,9 +223,9 @@ class Benchmark:
         return list(dict.fromkeys(point.case for point in self.points))
 
 
-def pareto_front(points: Iterable[Point]) -> list[Point]:
+def pareto_front(points: Iterable[Timed]) -> list[Timed]:
     """Return the points, fastest first, than which no other has less error and less run time."""
-    best: list[Point] = []
+    best: list[Timed] = []
     for point in sorted(points, key=lambda point: (point.time, point.error)):
         if not best or point.error < best[-1].error:
             best.append(point)
@@ -229,7 +238,7 @@ def cheapest(points: Iterable[Point], error: float) -> Point | None:
     return min(exact_enough, key=lambda point: point.time, default=None)
 
 
-def time_for(points: Iterable[Point], error: float) -> float:
+def time_for(points: Iterable[Timed], error: float) -> float:
     """Return the run time [s] for an `error` [rad], interpolated on the front as a power law.
 
     It is infinite if no point reaches the error.
@@ -244,8 +253,9 @@ def time_for(points: Iterable[Point], error: float) -> float:
 
 def times_in_rounds(points: Sequence[Point], error: float) -> list[float]:
     """Return the run time [s] for an `error` [rad] in each round, as `time_for` has it."""
-    rounds = range(min((len(point.times) for point in points), default=0))
-    return [time_for([point.of_round(number) for point in points], error) for number in rounds]
+    errors = [point.error for point in points]
+    rounds = zip(*(point.times for point in points), strict=False)
+    return [time_for(map(Timing, errors, times), error) for times in rounds]
 
 
 class Ratio(NamedTuple):

@@ -9,8 +9,9 @@ from mjbeer.exceptions import NoEquilibriumError
 from mjbeer.model.setting import ROLLINGS
 from mjbeer.studies.stability.judge import Trial
 from mjbeer.theory.can import Can, Load
+from mjbeer.theory.paper_scenes import frozen, hoop, pendulum, sliding
 from mjbeer.theory.record import ERROR
-from mjbeer.theory.scene import Scene, frozen, hoop, pendulum, sliding
+from mjbeer.theory.scene import Scene
 
 TOLERANCE = 1e-9
 """Tolerance of the runs that are made to a tolerance [rad]."""

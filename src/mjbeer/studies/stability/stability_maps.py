@@ -35,7 +35,8 @@ from mjbeer.studies import predictions
 from mjbeer.studies.predictions import ACCURACY, GROWTH, SoftRow, spring
 from mjbeer.studies.study import FAILED
 from mjbeer.theory.can import Can
-from mjbeer.theory.scene import Scene, frozen, sliding
+from mjbeer.theory.paper_scenes import frozen, sliding
+from mjbeer.theory.scene import Scene
 
 MAPS = "maps"
 """The group of the maps in the study."""

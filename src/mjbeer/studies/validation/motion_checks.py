@@ -14,7 +14,8 @@ from mjbeer.simulation.run import Run
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import Can
 from mjbeer.theory.liquid import liquid_in
-from mjbeer.theory.scene import Scene, frozen, pendulum, sliding
+from mjbeer.theory.paper_scenes import frozen, pendulum, sliding
+from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory, exact_motion
 
 _FRICTION = 10.0

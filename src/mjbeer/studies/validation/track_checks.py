@@ -10,7 +10,8 @@ import numpy as np
 from mjbeer.checks.check import Check
 from mjbeer.theory.can import Can
 from mjbeer.theory.liquid import liquid, liquid_in
-from mjbeer.theory.scene import Scene, frozen, sliding
+from mjbeer.theory.paper_scenes import frozen, sliding
+from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import exact
 from mjbeer.tracks.fit import BEND, fit
 from mjbeer.tracks.result import Fit
