@@ -397,17 +397,19 @@ def test_the_page_shows_what_its_command_prints(
     checkout = pathlib.Path(__file__).parents[2]
     page = (checkout / "docs" / "your-video.md").read_text()
     blocks = re.findall(r"^```console\n(.*?)^```", page, re.DOTALL | re.MULTILINE)
+    assert blocks
     monkeypatch.chdir(tmp_path)
     shutil.copytree(checkout / "examples", "examples")
     for block in blocks:
         command, *shown = block.splitlines()
         assert main(shlex.split(command.removeprefix("$ mjbeer "))) == 0
         printed = capsys.readouterr()
-        lines = [*printed.err.splitlines(), *printed.out.splitlines()]
+        lines = [*printed.out.splitlines(), *printed.err.splitlines()]
         for line in shown:
             alike = [other for other in lines if NUMBER.sub("#", other) == NUMBER.sub("#", line)]
             assert alike, line
             numbers = zip(NUMBER.findall(line), NUMBER.findall(alike[0]), strict=True)
             for on_page, now in numbers:
                 _, _, decimals = on_page.partition(".")
-                assert abs(float(on_page) - float(now)) < 1.5 * 10 ** -len(decimals), line
+                last_digit = 10.0 ** -len(decimals)
+                assert float(now) == pytest.approx(float(on_page), rel=1e-3, abs=1.5 * last_digit)

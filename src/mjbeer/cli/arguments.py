@@ -113,7 +113,7 @@ def mark(text: str) -> tuple[float, float, float]:
         return float(x), float(y), float(place)
     except ValueError:
         raise ArgumentTypeError(
-            f"it must be a mark, x and y [pixels] and its place [m], such as 655,398=1, got {text!r}"
+            f"it must be x and y [pixels] and the place [m], such as 655,398=1, got {text!r}"
         ) from None
 
 
