@@ -28,7 +28,8 @@ one."""
 _LARGEST_MISFIT = 0.01
 """Largest distance (rms) of marks from a perspective, as a share of their length in the picture."""
 _STRONGEST = 1.0
-"""Largest c of a perspective in units of the board: one end is then seen nine times as large."""
+"""Largest c of a perspective in units of the board: one end is then seen nine times as large as the
+other."""
 _BEYOND = 0.25
 """How far the can may be beyond the last marks or beside their line, as a share of their length.
 
@@ -114,14 +115,15 @@ class Perspective:
         return self.centre + self.length * (p - b) / (a - c * p)
 
     def scale_error(self, points: np.ndarray) -> float:
-        """Return the relative standard error of the distance from the first point to the last."""
+        """Return the relative standard error of the largest distance between points."""
         a, b, c = self.coefficients
-        p = self.line.places(points[[0, -1]]) / self.seen_length
+        seen = self.line.places(points)
+        p = np.array([seen.min(), seen.max()]) / self.seen_length
         q = (p - b) / (a - c * p)
         gradients = np.stack([-q, -np.ones(2), p * q]) / (a - c * p)
         change = np.diff(gradients, axis=1)[:, 0]
         error = math.sqrt(change @ self.covariance @ change)
-        return error / abs(float(np.diff(q)[0]))
+        return error / float(np.ptp(q))
 
 
 def perspective(marks: Any) -> Perspective:
@@ -145,17 +147,24 @@ def perspective(marks: Any) -> Perspective:
     # In these units all numbers are about 1, so that the least squares are well conditioned.
     q = (metres - centre) / length
     p = seen / seen_length
-    coefficients, covariance = optimize.curve_fit(
-        _picture, q, p, [1.0, 0.0, 0.0], np.full(len(p), _CLICK / seen_length), absolute_sigma=True
-    )
+    start = [1.0, 0.0, 0.0]
+    errors = np.full(len(p), _CLICK / seen_length)
+    try:
+        coefficients, covariance = optimize.curve_fit(
+            _picture, q, p, start, errors, absolute_sigma=True
+        )
+    except RuntimeError:  # the search finds no end, as where marks are far off
+        got = require.format_value(table)
+        raise ParameterError(f"marks must be those of a straight board, got {got}") from None
     squares = float(((_picture(q, *coefficients) - p) ** 2).sum())
     spare = len(p) - len(coefficients)
     misfit = math.sqrt(squares / spare) if spare else 0.0
-    if misfit > _LARGEST_MISFIT or abs(coefficients[2]) > _STRONGEST:
-        raise ParameterError(
-            f"no camera sees a straight board with these marks: {100 * misfit:.2g} % of their "
-            "length is left over; is one of them mistyped?"
-        )
+    if misfit > _LARGEST_MISFIT:
+        off = f"marks are {100 * misfit:.2g} % of their length off any perspective (rms)"
+        raise ParameterError(f"{off}: is one of them mistyped?")
+    if abs(coefficients[2]) > _STRONGEST:
+        allowed = "marks must be those of a camera that looks at the board, not along it"
+        raise ParameterError(f"{allowed}, got {require.format_value(table)}")
     larger = max(1.0, misfit * seen_length / _CLICK)
     ends = (float(seen[0]), float(seen[-1]))
     return Perspective(line, ends, centre, length, coefficients, larger**2 * covariance)

@@ -169,17 +169,16 @@ def read_track(
     for cell, interval in zip(cells["time"][1:], np.diff(arrays["time"]), strict=True):
         if interval <= 0:
             raise ParameterError(f"{cell.place}: this time is not later than the one before")
-    along = arrays["x"]
-    scale_error = 0.0
     if board and "y" not in arrays:
         raise ParameterError(f"{source}, line {heading}: with marks, x and y are needed")
+    along = arrays["x"]
+    scale_error = 0.0
     if "y" in arrays:
         points = np.stack([arrays["x"], arrays["y"]], axis=1)
         along = _line(source, points).places(points)
         if board:
+            along = _downhill(board.places(points))
             scale_error = board.scale_error(points)
-            places = board.places(points)
-            along = places if places[-1] > places[0] else -places
     if scale is not None:
         along = along / scale
     roll = arrays.get("roll")
@@ -351,3 +350,8 @@ def _line(source: pathlib.Path, points: np.ndarray) -> Line:
     except ParameterError as error:
         hint = "track the can's axis, not a mark on its rim"
         raise ParameterError(f"{source}: {error}; {hint}") from None
+
+
+def _downhill(places: np.ndarray) -> np.ndarray:
+    """Return places [m] that grow in the direction in which the can went, as those of `_line`."""
+    return places * math.copysign(1.0, places.mean() - places[0])
