@@ -202,7 +202,7 @@ def test_of_two_motions_alike_the_one_near_the_guess_is_taken() -> None:
     scene = frozen(math.radians(3), 0.6, METAL)
     track = filmed(scene, phi0=1.0, noise=3e-3, seconds=2.0)
     result = fitted(track, scene, "incline", "fill", phi0=1.0)
-    assert warned(result, "another motion is as near to the track: incline 4."), result
+    assert warned(result, "another motion is as near to the track: incline 5."), result
     assert result.values["fill"] == pytest.approx(0.6, abs=0.1)
 
 
