@@ -6,6 +6,7 @@ BIN := $(VENV)/bin
 PACKAGE := $(VENV)/.package
 TOOLS := $(VENV)/.tools
 LINTERS := $(VENV)/.linters
+SITE := $(VENV)/.site
 # There is a process for each core: threads of linear algebra would only take time from the others.
 # A process that has nothing left to do takes tests from another.
 PYTEST := OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --dist worksteal
@@ -13,7 +14,7 @@ PYTEST := OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --dist workstea
 export PYTHONDONTWRITEBYTECODE :=
 PIP := $(BIN)/python -m pip --disable-pip-version-check install --quiet --no-compile
 
-.PHONY: help report test quick everything search benchmark portability renders templates tables api lint clean
+.PHONY: help report test quick everything search benchmark portability renders templates tables site dist lint clean
 
 help:
 	@echo "make report       checks everything, draws the films, and writes one page: report/index.html (minutes)"
@@ -26,7 +27,8 @@ help:
 	@echo "make renders      draws the animated pictures of the README anew"
 	@echo "make templates    writes the files of mjcf/ that a viewer opens, and the digests of its mechanics"
 	@echo "make tables       writes the tables of the documents anew"
-	@echo "make api          writes a reference of all functions from their docstrings: build/api/index.html"
+	@echo "make site         writes all documents, the report and a reference as a site: build/site/index.html"
+	@echo "make dist         builds the packages to publish, installs one elsewhere, and tries it"
 	@echo "make portability  tries exported models in other tools (an hour, 1.5 GB)"
 	@echo "make clean        removes what the others wrote"
 
@@ -69,10 +71,28 @@ templates: $(PACKAGE)
 tables: $(TOOLS)
 	$(BIN)/python tools/documents.py
 
-# Names that mjbeer loads when they are first used are loaded, for pdoc to find them.
-api: $(LINTERS)
-	@$(BIN)/python -c 'import mjbeer, pathlib, pdoc; vars(mjbeer).update({each: getattr(mjbeer, each) for each in mjbeer.__all__}); \
-		pdoc.pdoc("mjbeer", output_directory=pathlib.Path("build/api"))'
+# The report is made if there is none. The site is what any web host serves, and opens from the disk as well.
+site: $(SITE) report/index.html
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict
+	$(BIN)/python tools/site_links.py build/site
+
+report/index.html:
+	$(MAKE) report
+
+# Nothing here needs .venv, which has mjbeer from the checkout: what is tried is the wheel, outside of the checkout.
+dist:
+	rm -rf dist build/release build/wheel
+	$(PYTHON) -m venv build/release
+	build/release/bin/python -m pip install --quiet --upgrade pip
+	build/release/bin/python -m pip install --quiet --group release
+	build/release/bin/check-jsonschema --builtin-schema vendor.citation-file-format CITATION.cff
+	build/release/bin/python -m build
+	build/release/bin/python -m twine check --strict dist/*
+	$(PYTHON) -m venv build/wheel
+	build/wheel/bin/python -m pip install --quiet dist/*.whl
+	cd build && wheel/bin/mjbeer simulate frozen --phi0 180 --duration 0.8 --tolerance 1e-10
+	cd build && wheel/bin/mjbeer export frozen --can metal --rolling contact --output can.xml
+	cd build && wheel/bin/mjbeer validate
 
 # The type checker reads what the tests import, too.
 lint: $(LINTERS)
@@ -98,6 +118,11 @@ $(TOOLS): $(PACKAGE)
 
 $(LINTERS): $(TOOLS)
 	@$(PIP) --group dev
+	@touch $@
+
+$(SITE): $(PACKAGE)
+	@$(PIP) --upgrade pip
+	@$(PIP) --group site
 	@touch $@
 
 clean:

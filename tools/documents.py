@@ -38,8 +38,10 @@ from mjbeer.studies.stability.judge import (
     WARNED,
 )
 from mjbeer.studies.validation.validate import checks
+from mjbeer.theory import slosh
+from mjbeer.theory.can import Can
 from mjbeer.theory.liquid import LIQUIDS, NAMES, centrifugal_ratio, liquid_in
-from mjbeer.theory.paper_scenes import frozen
+from mjbeer.theory.paper_scenes import frozen, sliding
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
 
@@ -382,6 +384,40 @@ def honesty() -> str:
     )
 
 
+def swings() -> str:
+    """How fast beer swings in a can of 33 mm on level ground, as a solid and as a liquid.
+
+    A frequency is in brackets where another mode than the slowest has more of the energy.
+    """
+    columns = (
+        "fill",
+        "no mass: paper [Hz]",
+        "no mass: liquid [Hz]",
+        "12-oz can: paper [Hz]",
+        "12-oz can: liquid [Hz]",
+        "share of the energy",
+        "amplitude halved after",
+    )
+    lines = []
+    for fill in (0.1, 0.25, 0.5, 0.75, 0.9):
+        cells = [f"{fill:g}"]
+        for can in (Can(), real_beer.CAN):
+            ice = sliding(0.0, fill, can, LIQUIDS["beer"].density)
+            modes = slosh.rolling(fill, ice.effective_mass / ice.load.mass)
+            hertz = modes.frequencies(can.radius, ice.gravity)[0] / math.tau
+            is_most = modes.energy_shares.argmax() == 0
+            cells += [f"{ice.frequency() / math.tau:.2f}", f"{hertz:.2f}"]
+            if not is_most:
+                cells[-1] = f"({cells[-1]})"
+        ratios = modes.damping_ratios(
+            can.radius, can.length, ice.gravity, LIQUIDS["beer"].viscosity
+        )
+        periods = math.log(2) / (math.tau * (ratios.layers + ratios.bulk))
+        cells += [f"{100 * modes.energy_shares[0]:.0f} %", f"{periods:.0f} swings"]
+        lines.append(tuple(cells))
+    return table(columns, lines)
+
+
 def speeds() -> str:
     """Terminal speeds of liquids in the model of one lump.
 
@@ -477,7 +513,7 @@ def with_water(volume: float, friction: float = 1.0, drag: float = 0.0) -> Traje
 _OF_THE_PAPER = (holds, misprints)
 _OF_THE_BENCHMARK = (others, whole_calls, ranges, measured, long_run, contact)
 _OF_STABILITY = (steps, agreement, damped, damped_runs, kinds, honesty)
-_OF_REAL_BEER = (speeds, metre)
+_OF_REAL_BEER = (swings, speeds, metre)
 _ALL = (*_OF_THE_PAPER, gauss_jackson, *_OF_THE_BENCHMARK, *_OF_STABILITY, *_OF_REAL_BEER)
 MADE = {made.__name__.replace("_", "-"): made for made in _ALL}
 """What makes the text between two marks, by their name."""

@@ -29,7 +29,9 @@ def test_a_plot_shows_phi_and_u_on_top_of_exact_theory() -> None:
     assert np.array_equal(theory.get_ydata(), np.degrees(expected.phi))
     assert np.array_equal(below.get_lines()[1].get_ydata(), run.u)
 
-    names = [text.get_text() for text in above.get_legend().get_texts()]
+    legend = above.get_legend()
+    assert legend
+    names = [text.get_text() for text in legend.get_texts()]
     assert names == ["exact theory", "MuJoCo"]
     assert above.get_ylabel() == "φ [°]"
     assert below.get_ylabel() == "u [m]"
@@ -62,10 +64,14 @@ def test_what_would_need_the_incline_to_pull_is_dotted() -> None:
 
     for axes in panels:
         rolls, pulled = axes.get_lines()
-        assert rolls.get_xdata()[-1] < 0.8339 < pulled.get_xdata()[0] < 0.836
+        last_of_rolls = np.asarray(rolls.get_xdata())[-1]
+        first_of_pulled = np.asarray(pulled.get_xdata())[0]
+        assert last_of_rolls < 0.8339 < first_of_pulled < 0.836
         assert rolls.get_linestyle() == "-"
         assert pulled.get_linestyle() == ":"
-    assert len(panels[0].get_legend().get_texts()) == 2
+    legend = panels[0].get_legend()
+    assert legend
+    assert len(legend.get_texts()) == 2
 
 
 def test_a_can_in_contact_leaves_the_incline_by_itself_and_is_not_dotted() -> None:

@@ -378,12 +378,6 @@ def test_what_cannot_be_filled_anew_is_refused() -> None:
         (pendulum(), {}, UnsupportedError, "has beer in it, got a load without a fill"),
         (sliding(can=METAL, drag=0.1), {}, UnsupportedError, "no drag of the air"),
         (
-            Scene(METAL, Load.liquid(METAL)),
-            {},
-            UnsupportedError,
-            "that of slosh in a can that rolls: .* takes Load.segment",
-        ),
-        (
             standing(),
             {"friction": [1, 0, 0, 0]},
             ParameterError,

@@ -1,19 +1,31 @@
-"""How fast cans with real liquids roll in the first metre, against Jackson's facts and theory."""
+"""How fast real liquids swing, and cans with them roll, against Jackson's facts and theory."""
 
 import math
 import pathlib
 import sys
+import warnings
 
 import mpmath
+import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from mjbeer import exact
+from mjbeer import Can, LiquidWarning, Load, Scene, exact, liquid, simulate, sliding
+from mjbeer.theory import slosh
 from mjbeer.theory.liquid import FILM_LOAD, LIQUIDS
 from mjbeer.theory.scene import GRAVITY
 
 sys.path.append(str(pathlib.Path(__file__).parents[2] / "docs" / "figures"))
-from real_beer import CAN, DRAG, let_go, over_first_metre, times_of, water_in
+from real_beer import (
+    CAN,
+    DRAG,
+    SWING,
+    capillary_length,
+    let_go,
+    over_first_metre,
+    times_of,
+    water_in,
+)
 
 pytestmark = pytest.mark.slow
 
@@ -107,3 +119,51 @@ def test_a_nearly_full_can_is_as_fast_as_a_full_one(
     monkeypatch.setattr("mjbeer.theory.liquid.ENDS", 0.0)
     full = 2 / metre_of_a_full_can(incline) ** 2 / (GRAVITY * math.sin(incline))
     assert first_metre(400.0, incline) == pytest.approx(full, abs=4e-3)
+
+
+def test_the_page_has_the_frequencies_of_a_half_full_can() -> None:
+    """In hertz, by the paper and as a liquid; in swings and in frames; how far the can rolls."""
+    for can, by_paper, by_liquid in ((Can(), 3.2, 4.8), (CAN, 3.1, 4.5)):
+        paper = sliding(0.0, 0.5, can, LIQUIDS["beer"].density).frequency() / math.tau
+        beer = liquid("beer", 0.0, 0.5, can)
+        found = beer.frequency() / math.tau
+        assert (round(paper, 1), round(found, 1)) == (by_paper, by_liquid)
+    assert (round(60 / found), round(60 / paper)) == (13, 20)
+    assert (round(10 / found, 1), round(10 / paper, 1)) == (2.2, 3.3)
+    arm = beer.load.moment / beer.effective_mass
+    assert round(1e3 * arm * 2 * SWING, 1) == 3.8
+    run = simulate(liquid("beer", incline=0.0, fill=0.5), 1.0, 0.05, tolerance=1e-6)
+    assert round(run.frequency() / math.tau, 1) == 4.8
+
+
+def test_the_page_has_the_damping_of_a_half_full_can() -> None:
+    """Of beer's layers, of a swing on level ground, and of one in a can that rolls on."""
+    beer = liquid("beer", 0.0, 0.5, CAN)
+    modes = slosh.rolling(0.5, beer.effective_mass / beer.load.mass)
+    nu = LIQUIDS["beer"].viscosity
+    ratios = modes.damping_ratios(CAN.radius, CAN.length, GRAVITY, nu)
+    assert round(ratios.layers, 4) == 0.0015
+    assert round(1 - modes.energy_shares[0], 2) == 0.11
+    # The wavenumber of waves on deep water that are as fast.
+    wavenumber = 1 / (CAN.radius * modes.lengths[0])
+    assert round((capillary_length() * wavenumber) ** 2 / 2, 3) == 0.025
+
+    def damping(name: str, incline: float) -> float:
+        with warnings.catch_warnings(action="ignore", category=LiquidWarning):
+            rates = liquid(name, incline, 0.5, CAN).modes()
+        swing = max(rates, key=lambda rate: rate.imag)
+        return -swing.real / abs(swing)
+
+    assert round(damping("water", 0.0), 4) == 0.0015
+    assert round(damping("olive oil", 0.0), 3) == 0.037
+    assert round(damping("water", INCLINES[0]), 3) == 0.018
+
+
+def test_honey_with_the_inertia_of_slosh_would_be_elsewhere() -> None:
+    """It is let go at 0.2 rad on level ground."""
+    honey = liquid("honey", 0.0)
+    load = Load.liquid(Can(), 0.5, LIQUIDS["honey"].density)
+    sloshing = Scene(Can(), load, 0.0, damping=honey.damping)
+    times = np.linspace(0, 2, 2001)
+    apart = exact(honey, times, 0.2).phi - exact(sloshing, times, 0.2).phi
+    assert round(np.abs(apart).max(), 2) == 0.12

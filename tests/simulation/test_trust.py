@@ -190,7 +190,7 @@ def test_a_liquid_that_is_no_lump_any_more_is_a_warning() -> None:
         LiquidWarning,
         match=r"from t = 0\.\d+ s on the wall's centrifugal acceleration is more than",
     ) as told:
-        run = simulate(scene, 1.0, 1.0)
+        run = simulate(scene, 1.0, 0.1)
 
     assert run.warnings == (str(told[0].message),)
     assert (run.trusted, run.solver_warnings, run.rolling_warnings) == (False, (), ())

@@ -335,7 +335,7 @@ def test_the_command_fits(tmp_path: pathlib.Path, capsys: pytest.CaptureFixture[
 
 def test_the_plot_shows_what_is_left(water_fit: Fit) -> None:
     _, rests, _ = water_fit.plot()
-    shown = rests.get_lines()[0].get_ydata()  # [mm]
+    shown = np.asarray(rests.get_lines()[0].get_ydata())  # [mm]
     # A noise is divided by the points less their share of the unknowns: 2 % more than the rms.
     assert np.std(shown) == pytest.approx(1e3 * water_fit.noise["along"], rel=0.05)
 

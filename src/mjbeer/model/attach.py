@@ -37,8 +37,12 @@ def attach(
 
     A `standing` can stands on its origin, the middle of the bottom; a scene with beer gives a lying
     can, whose origin is in the middle of its axis, which is y. The scene's incline is not built,
-    and counts only in the damping that `mjbeer.liquid` has for it. `pos` [m] and `quat` are those
-    of the origin in a `body` of the parent; a can that is not `free` is fixed to it.
+    and counts only in the damping that `mjbeer.liquid` has for it. A load of `Load.liquid` sloshes
+    across the axis of the can like the slowest mode of a can that rolls, and along it stays at
+    rest. In a sheet metal can that is held it swings up to 1 % more slowly than the liquid.
+
+    `pos` [m] and `quat` are those of the origin in a `body` of the parent; a can that is not `free`
+    is fixed to it.
 
     `friction` is one coefficient, or two or three: sliding, torsional, rolling. `None` is MuJoCo's
     default: 1, 0.005 and 0.0001. Where two geoms meet, MuJoCo takes the larger coefficient of the

@@ -70,8 +70,8 @@ def simulate(
       mjcf: a folder of MJCF that is read instead of mjbeer's, as in `build`.
 
     A run that slips, parts from the incline, drifts in energy, or would have to be pulled at gives
-    an `UntrustedWarning`, one in which a liquid is no lump any more a `LiquidWarning`, and a start
-    beyond a whole turn an `AngleWarning`.
+    an `UntrustedWarning`, one in which a liquid is no lump any more, or tilts beyond linear theory,
+    a `LiquidWarning`, and a start beyond a whole turn an `AngleWarning`.
 
     Raises:
       ParameterError: if a parameter is not allowed.

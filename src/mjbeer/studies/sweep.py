@@ -136,7 +136,7 @@ def sweep(
     executor: Executor | None = None,
     output: str | os.PathLike[str] | None = None,
     progress: bool = True,
-    **parameters: Any,
+    **parameters: object,
 ) -> "xarray.Dataset":
     """Simulate many scenes over a `duration` [s] each, and return their results as a Dataset.
 

@@ -276,7 +276,7 @@ class Swing(NamedTuple):
 
 def swing_of(ice: Scene, properties: Properties) -> Swing:
     """Return how the liquid swings whose scene without damping, with a load of ice, is `ice`."""
-    fill = ice.load.fill
+    fill = require.fill(ice.load.fill)
     lowest, highest = slosh.FILLS
     if not lowest <= fill <= highest:
         return _swing_of_ice(ice, properties, f"its fill is not within {lowest:g} to {highest:g}")
@@ -311,7 +311,7 @@ def _swing_of_slosh(ice: Scene, properties: Properties, modes: slosh.RollingMode
     c (1 - k/a)^2 phi_dot^2. That is the damping ratio c (1 - k/a)^2/(2 J omega).
     """
     can = ice.can
-    load = Load.liquid(can, ice.load.fill, properties.density)
+    load = Load.liquid(can, require.fill(ice.load.fill), properties.density)
     omega = float(modes.frequencies(can.radius, ice.gravity)[0])
     ratios = modes.damping_ratios(can.radius, can.length, ice.gravity, properties.viscosity)
     J = load.axis_inertia - load.moment**2 / ice.effective_mass
@@ -360,7 +360,7 @@ class _Wetted(NamedTuple):
 
 def _wetted(free: Scene) -> _Wetted:
     """Return what the liquid wets of the can of a scene."""
-    shape = segment(free.load.fill)
+    shape = segment(require.fill(free.load.fill))
     a = free.can.radius
     arc = 2 * shape.half_angle
     return _Wetted(
@@ -534,7 +534,9 @@ def _coating_rate(free: Scene, properties: Properties) -> float:
     """
     a = free.can.radius
     largest_area = FILM_LOAD * a * math.sqrt(properties.viscosity * a / free.gravity)
-    share_by_root = largest_area / (a**2 * segment(free.load.fill).area)  # divided by sqrt(W)
+    share_by_root = largest_area / (
+        a**2 * segment(require.fill(free.load.fill)).area
+    )  # divided by sqrt(W)
     return (_COATING_SHARE / share_by_root) ** 2
 
 

@@ -3,7 +3,8 @@
 The liquid has no viscosity, but for its damping, and its surface tilts by small angles. In a
 cross-section, x is level, y points upwards, and the surface reaches from x = -c to x = c. The can
 has the radius a and the length l, the liquid the density rho and the mass m; b is the distance of
-its centre of mass from the axis. The modes in which the surface is even in x move no mass sideways, and are left out.
+its centre of mass from the axis. The modes in which the surface is even in x move no mass sideways,
+and are left out.
 
 **The surface.** The wall is a circle, so that the pressure on any part of it acts along a line
 through the axis. It does not matter how the can turns, only how far its axis has moved: by u. In
@@ -248,7 +249,7 @@ class RollingModes(Modes):
     @functools.cached_property
     def _losses(self) -> "_Losses":
         """Return the integrals by which the slowest mode loses energy."""
-        modes = held(self.fill)
+        modes = _held(self.fill)
         shape = segment(self.fill)
         beta = shape.half_angle
         half_chord = math.sin(beta)
@@ -307,12 +308,7 @@ def held(fill: float) -> HeldModes:
     Raises:
       ParameterError: if the fill is not within `FILLS`.
     """
-    fill = require.number("fill", fill)
-    lowest, highest = FILLS
-    if not lowest <= fill <= highest:
-        allowed = f"fill of a liquid that sloshes must be between {lowest:g} and {highest:g}"
-        raise ParameterError(f"{allowed}: a full can has no free surface, got {fill!r}")
-    return _held(fill)
+    return _held(_require_fill(fill))
 
 
 def rolling(fill: float, mass_ratio: float) -> RollingModes:
@@ -331,14 +327,22 @@ def rolling(fill: float, mass_ratio: float) -> RollingModes:
     if ratio < 1:
         got = require.format_value(mass_ratio)
         raise ParameterError(f"mass_ratio must be 1 or greater (infinity is allowed), got {got}")
-    held(fill)  # refuses a fill that is not allowed
-    return _rolling(float(fill), ratio)
+    return _rolling(_require_fill(fill), ratio)
 
 
-# A fit of an incline asks for the same modes hundreds of times.
+def _require_fill(fill: float) -> float:
+    """Return a fill with which a liquid sloshes."""
+    fill = require.number("fill", fill)
+    lowest, highest = FILLS
+    if not lowest <= fill <= highest:
+        allowed = f"fill of a liquid that sloshes must be between {lowest:g} and {highest:g}"
+        raise ParameterError(f"{allowed}: a full can has no free surface, got {fill!r}")
+    return fill
+
+
 @functools.lru_cache(maxsize=1024)
 def _rolling(fill: float, mass_ratio: float) -> RollingModes:
-    modes = held(fill)
+    modes = _held(fill)
     arm = modes.offset / mass_ratio
     # In the basis of the eigenvectors of the can that is held.
     flat = np.sqrt(modes.energy_shares)

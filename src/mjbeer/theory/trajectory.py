@@ -8,7 +8,7 @@ import math
 import os
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -27,6 +27,12 @@ from mjbeer.theory.equations import (
 )
 from mjbeer.theory.record import Diagnosis, Record, diagnose
 from mjbeer.theory.scene import Scene
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from pandas import DataFrame
+
+    from mjbeer.drawing.video import Camera
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
@@ -185,7 +191,7 @@ class Trajectory(Coordinates):
         periods = (len(turning_times) - 1) // 2
         return float(math.tau * periods / (turning_times[2 * periods] - turning_times[0]))
 
-    def plot(self, *names: str, theory: bool = False) -> Any:
+    def plot(self, *names: str, theory: bool = False) -> "tuple[Axes, ...]":
         """Plot quantities, as "phi", "u" and "energy", in a new figure.
 
         Return the matplotlib axes of each. Without names they are phi [degrees] and u [m]. With
@@ -203,18 +209,20 @@ class Trajectory(Coordinates):
         path: str | os.PathLike[str] | None = None,
         width: int = 640,
         height: int = 360,
-        **others: Any,
+        fps: float = 30,
+        speed: float = 1.0,
+        camera: "Camera" = "auto",
+        progress: bool = True,
     ) -> None:
         """Write a video of the motion to `path` (.mp4), or show it in a notebook if there is none.
 
-        `width` and `height` are in pixels. The other arguments, and the errors, are those of
-        `mjbeer.render`.
+        The arguments and the errors are those of `mjbeer.render`.
         """
         from mjbeer.drawing import video
 
-        video.render(self, path, width, height, **others)
+        video.render(self, path, width, height, fps, speed, camera, progress)
 
-    def to_dataframe(self) -> Any:
+    def to_dataframe(self) -> "DataFrame":
         """Return the motion as a pandas DataFrame: a row for each sample, units in the headers."""
         import pandas as pd
 

@@ -3,7 +3,7 @@
 import math
 import os
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,6 +14,9 @@ from mjbeer.theory.scene import Scene
 from mjbeer.tracks.doubts import LAW_ERROR
 from mjbeer.tracks.track import Track
 from mjbeer.tracks.unknowns import FITTABLE
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -90,7 +93,7 @@ class Fit:
 
     __repr__ = __str__
 
-    def plot(self) -> tuple[Any, ...]:
+    def plot(self) -> "tuple[Axes, ...]":
         """Plot track and model, their difference in mm, and the speed in a new figure.
 
         Returns the axes.
