@@ -1,11 +1,16 @@
 """A scene in words, as titles and captions have it."""
 
-from mjbeer import Damping, frozen, pendulum, sliding
+import math
+
+from mjbeer import Can, Damping, frozen, liquid, pendulum, sliding
 from mjbeer.drawing.words import damping_in_words, in_words
 
 
 def test_a_scene_in_words() -> None:
     assert in_words(frozen()) == "half-full massless can, beer frozen, incline 10°"
+    can = Can.sheet_metal()
+    water = liquid("water", math.radians(2), 0.75, can)
+    assert in_words(water) == "three-quarters-full can of 8.57 g, water, incline 2°"
     assert in_words(pendulum(0.0)) == "wheel with a pendulum, M = 200 g, m = 100 g, level ground"
 
 

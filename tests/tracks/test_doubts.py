@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mjbeer import Track, frozen
-from mjbeer.tracks.doubts import chance_of_white_noise, doubts
+from mjbeer.tracks.doubts import chance_of_white_noise, doubts, doubts_of_law
 from mjbeer.tracks.least_squares import Minimum, Weights
 from mjbeer.tracks.unknowns import Measurement, make_unknowns, to_values, to_variables
 
@@ -47,13 +47,15 @@ def test_white_noise_is_doubted_as_often_as_said() -> None:
     assert 12.5 - 3 * 12.5**0.5 < (chances < 0.1).sum() < 50 + 3 * 50**0.5
 
 
-def test_slow_waves_below_the_noise_are_no_white_noise() -> None:
+@pytest.mark.parametrize(("size", "rare"), [(0.52, "1,000"), (0.6, "100,000"), (2.0, "1,000,000")])
+def test_slow_waves_below_the_noise_are_no_white_noise(size: float, rare: str) -> None:
     """A wave of 0.7 of the noise has 40 of the power of one, among 10 in a sixteenth of all."""
     noise = np.random.default_rng(2).standard_normal(POINTS)
-    wave = 0.7 * np.sqrt(2) * np.cos(np.linspace(0, 4 * np.pi, POINTS))
+    wave = size * np.sqrt(2) * np.cos(np.linspace(0, 4 * np.pi, POINTS))
     minimum = replace(GOOD, residuals=np.append(noise + wave, 0.0))
     (doubt,) = doubts(minimum, [minimum], UNKNOWNS)
-    assert doubt.startswith("the model is wrong, or the track: noise is as smooth")
+    of_noise = f"their difference is not like noise, which is as smooth in fewer than 1 of {rare}"
+    assert doubt == f"the model is wrong, or the track: {of_noise} tracks"
 
 
 def test_points_left_out_are_counted_and_not_judged() -> None:
@@ -72,8 +74,44 @@ def test_points_left_out_are_counted_and_not_judged() -> None:
 def test_a_measured_value_three_errors_off_is_doubted(fill: float, is_doubted: bool) -> None:
     minimum = moved(fill=fill)
     found = doubts(minimum, [minimum], UNKNOWNS)
-    doubt = "the model is wrong, or what was known: fill is 3.1 of its errors off"
+    doubt = "the model is wrong, or what was known: fill is 0.531, 3.1 standard errors off 0.5"
     assert found == ((doubt,) if is_doubted else ())
+
+
+@pytest.mark.parametrize(("bend", "is_doubted"), [(0.0129, False), (0.0131, True)])
+def test_a_bend_that_the_track_hardly_tells_is_doubted_sooner(
+    bend: float, is_doubted: bool
+) -> None:
+    """An error of 5 mm before the fit and of 2.5 mm after it leave 4.33 mm to chance."""
+    unknowns = make_unknowns(["bend"], TRACK, frozen(0.05), {"bend": Measurement(0.0, 5e-3)})
+    jacobian = np.zeros((POINTS + 1, 1))
+    jacobian[0] = 2  # the error is half of a large change, 5 mm
+    variables = to_variables(unknowns, {"bend": bend})
+    minimum = replace(GOOD, variables=variables, jacobian=jacobian)
+    found = doubts(minimum, [minimum], unknowns)
+    off = "bend is 13 mm, 3.0 standard errors off 0 mm"
+    hint = "an oblique camera bends a track, and marks on the board unbend it"
+    doubt = f"the model is wrong, or what was known: {off}; {hint}"
+    assert found == ((doubt,) if is_doubted else ())
+
+
+@pytest.mark.parametrize(
+    ("factor", "error", "is_doubted"),
+    [
+        (1.29, 0.0, False),
+        (1.31, 0.0, True),
+        (0.69, 0.0, True),
+        (1.59, 0.17, False),  # three times 0.197 are 0.592
+        (1.60, 0.17, True),
+    ],
+)
+def test_a_damping_far_from_its_law_is_doubted(
+    factor: float, error: float, is_doubted: bool
+) -> None:
+    """The law itself has an error of a tenth."""
+    found = doubts_of_law("water", factor, error)
+    begin = f"the damping is {factor:.2g} times that of water: was it water"
+    assert [doubt.startswith(begin) for doubt in found] == [True] * is_doubted
 
 
 def test_what_changes_together_is_named() -> None:
@@ -91,7 +129,7 @@ def test_another_motion_is_named_if_it_is_beyond_the_errors() -> None:
     elsewhere = moved(place=3.0)
     other = moved(fill=0.51)
     assert doubts(GOOD, [GOOD, near, elsewhere], UNKNOWNS) == ()
-    found = "another motion is as near to the track: incline = 0.05, fill = 0.51"
+    found = "another motion is as near to the track: incline 2.86°, fill 0.51"
     assert doubts(GOOD, [GOOD, other], UNKNOWNS) == (found,)
     assert to_values(UNKNOWNS, other.variables)["fill"] == pytest.approx(0.51)
 

@@ -4,6 +4,9 @@ import inspect
 import json
 import math
 import pathlib
+import re
+import shlex
+import shutil
 from types import SimpleNamespace
 from typing import Any
 from unittest import mock
@@ -12,13 +15,13 @@ import numpy as np
 import pytest
 
 import mjbeer
-from mjbeer import Can, Fit, Scene, Track, exact, fit, frozen, liquid, sliding
+from mjbeer import Can, Fit, Scene, Track, exact, fit, frozen, liquid, read_track, sliding
 from mjbeer.cli.app import main
 from mjbeer.exceptions import MjbeerError, ParameterError
 from mjbeer.studies.validation import track_checks
 from mjbeer.tracks.track_model import with_parameters
 from mjbeer.tracks.unknowns import FITTABLE
-from tests.tracks.filmed import PLACE, RELEASED, filmed
+from tests.tracks.filmed import PLACE, RELEASED, Camera, filmed
 
 pytestmark = pytest.mark.slow
 METAL = Can.sheet_metal()
@@ -126,9 +129,57 @@ def test_ice_fitted_as_oil_is_doubted() -> None:
     assert warned(result, "the model is wrong, or the track"), result
 
 
+def test_water_that_sloshes_is_not_the_lump_of_the_paper() -> None:
+    """Let go with a level surface, it swings through as much as the incline, and faster."""
+    water = liquid("water", math.radians(5), can=METAL)
+    lump = sliding(water.incline, can=METAL, density=998.2, damping=water.damping_law)
+    result = fitted(filmed(water, seconds=2.5), lump, "incline", "damping")
+    assert warned(result, "their difference is not like noise"), result
+
+
 def test_oil_fitted_as_water_is_doubted() -> None:
     result = fitted(filmed(OIL), WATER, known=KNOWN)
     assert warned(result, "the model is wrong, or the track"), result
+
+
+def seen_obliquely(folder: pathlib.Path) -> tuple[pathlib.Path, np.ndarray]:
+    """A table in pixels of the track of water, seen at 20 degrees, and marks on its board.
+
+    Both have errors of a pixel in x and y, as large as 1.4 mm.
+    """
+    camera = Camera(yaw=math.radians(20))
+    rng = np.random.default_rng(5)
+    track = filmed(WATER, noise=0.0)
+    axis = camera.picture(track.along, METAL.radius, WATER.incline, 0.6)
+    axis += rng.standard_normal(axis.shape)
+    places = np.array([0.0, 0.6, 1.2])
+    marks = camera.picture(places, 0.0, WATER.incline, 0.6)
+    marks += rng.standard_normal(marks.shape)
+    path = folder / "can.csv"
+    table = np.column_stack([track.time, axis])
+    np.savetxt(path, table, header="t,x,y", comments="", delimiter=",")
+    return path, np.column_stack([marks, places])
+
+
+def test_marks_on_the_board_undo_an_oblique_camera(tmp_path: pathlib.Path) -> None:
+    path, marks = seen_obliquely(tmp_path)
+    track = read_track(path, marks=marks)
+    result = fitted(track, steeper(WATER), "incline", "damping")
+    assert_within_errors(result, incline=WATER.incline, damping=1.0, released=RELEASED, scale=1.0)
+    # Larger errors would say little.
+    assert result.errors["damping"] < 0.2
+    # The clicks of the outer marks have errors of 1.4 mm each, over 1.2 m.
+    assert result.errors["scale"] == pytest.approx(math.sqrt(2) * 1.4e-3 / 1.2, rel=0.2)
+    assert not warned(result, "model is wrong"), result
+
+
+def test_an_oblique_camera_is_doubted_without_marks(tmp_path: pathlib.Path) -> None:
+    path, marks = seen_obliquely(tmp_path)
+    scale = float(np.hypot(*(marks[2] - marks[0])[:2])) / 1.2
+    track = read_track(path, scale=scale)
+    result = fitted(track, steeper(WATER), "incline", "damping")
+    assert abs(result.values["damping"] - 1) > 4 * result.errors["damping"]
+    assert warned(result, "an oblique camera bends a track"), result
 
 
 def test_a_resistance_contradicts_a_measured_incline() -> None:
@@ -151,7 +202,7 @@ def test_of_two_motions_alike_the_one_near_the_guess_is_taken() -> None:
     scene = frozen(math.radians(3), 0.6, METAL)
     track = filmed(scene, phi0=1.0, noise=3e-3, seconds=2.0)
     result = fitted(track, scene, "incline", "fill", phi0=1.0)
-    assert warned(result, "another motion is as near to the track: incline = 0.08"), result
+    assert warned(result, "another motion is as near to the track: incline 5."), result
     assert result.values["fill"] == pytest.approx(0.6, abs=0.1)
 
 
@@ -246,9 +297,32 @@ def test_the_command_shows_the_fit(
     assert np.array_equal(given["track"].time, water_fit.track.time)
     assert np.array_equal(given["track"].along, water_fit.track.along)
     printed = capsys.readouterr().out
+    assert "% full can of 8.57 g, water, incline 2°; 167 points with a noise of" in printed
     assert printed == "\n".join([water_fit.title, *water_fit.lines()]) + "\n"
     degrees = math.degrees(water_fit.values["incline"])
     assert f"incline, less rolling resistance: {degrees:.3f}°" in plot.read_text()
+
+
+def test_the_command_reads_marks_and_makes_a_can_of_one_s_own(
+    water_fit: Fit, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked = mock.Mock(return_value=water_fit)
+    monkeypatch.setattr("mjbeer.tracks.fit.fit", asked)
+    path, marks = seen_obliquely(tmp_path)
+    words = [f"{x},{y}={place}" for x, y, place in marks.tolist()]
+    can = "--can metal --can-mass 0.013 --can-radius 0.0331 --length 0.115"
+    assert main(["fit", str(path), "liquid", "--marks", *words, *can.split()]) == 0
+    track, guess = asked.call_args.args[:2]
+    read = read_track(path, marks=marks)
+    assert np.array_equal(track.along, read.along)
+    assert track.scale_error == read.scale_error
+    sheet = Can.sheet_metal(0.0331, 0.115)
+    assert (guess.can.radius, guess.can.length, guess.can.mass) == (0.0331, 0.115, 0.013)
+    assert guess.can.inertia / 0.013 == pytest.approx(sheet.inertia / sheet.mass, rel=1e-12)
+
+    assert main(["fit", str(path), "liquid", "--scale", "700"]) == 0
+    track, _ = asked.call_args.args[:2]
+    assert np.array_equal(track.along, read_track(path, scale=700).along)
 
 
 def test_the_command_fits(tmp_path: pathlib.Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -309,3 +383,33 @@ def test_the_validation_finds_errors_that_are_too_small(
     )
     monkeypatch.setattr(track_checks, "fitted", mock.Mock(return_value=pretended))
     assert check.result().passed == passes
+
+
+NUMBER = re.compile(r"\d+\.?\d*")
+
+
+def test_the_page_shows_what_its_command_prints(
+    tmp_path: pathlib.Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """Its words are those that are printed; a last digit may be another on another machine."""
+    checkout = pathlib.Path(__file__).parents[2]
+    page = (checkout / "docs" / "your-video.md").read_text()
+    blocks = re.findall(r"^```console\n(.*?)^```", page, re.DOTALL | re.MULTILINE)
+    assert blocks
+    monkeypatch.chdir(tmp_path)
+    shutil.copytree(checkout / "examples", "examples")
+    for block in blocks:
+        command, *shown = block.splitlines()
+        assert main(shlex.split(command.removeprefix("$ mjbeer "))) == 0
+        printed = capsys.readouterr()
+        lines = [*printed.out.splitlines(), *printed.err.splitlines()]
+        for line in shown:
+            alike = [other for other in lines if NUMBER.sub("#", other) == NUMBER.sub("#", line)]
+            assert alike, line
+            numbers = zip(NUMBER.findall(line), NUMBER.findall(alike[0]), strict=True)
+            for on_page, now in numbers:
+                _, _, decimals = on_page.partition(".")
+                last_digit = 10.0 ** -len(decimals)
+                assert float(now) == pytest.approx(float(on_page), rel=1e-3, abs=1.5 * last_digit)

@@ -63,10 +63,10 @@ def test_the_next_round_leaves_a_valley_a_swing_too_late(rocking: TrackModel) ->
 
 
 def test_a_sliding_loads_incline_is_put_right_with_the_release() -> None:
-    """Its distances are nearly proportional to it; a motion with a fifth more is simulated."""
+    """Its distances are nearly proportional to it: of a fifth too much, at most a fifth is left."""
     model = TrackModel(filmed(OIL), OIL, "level")
     guess = guess_anywhere(model, {"incline": 1.2 * OIL.incline})
-    assert guess.values["incline"] == pytest.approx(OIL.incline, rel=0.03)
+    assert guess.values["incline"] == pytest.approx(OIL.incline, rel=0.04)
 
 
 def test_each_valley_and_each_fill_come_before_the_rest(

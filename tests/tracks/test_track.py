@@ -61,14 +61,14 @@ WRONG = {
     **UNCLEAR,
     "line 1: 2 columns may be x; say which": table("t,x,X", ",", TIME, PLACE, PLACE),
     "line 1: time and x are needed": table("t,z", ",", TIME, PLACE),
-    "line 1, column 2: the unit of x is one of m, cm, mm, got 'x (px)'": PIXELS,
+    "line 1, column 2: the unit of x is one of m, cm, mm, or pixels with a scale or marks": PIXELS,
     "line 3, column 2: 'lost' is no number": LOST,
     "line 4, column 1: this time is not later": BACKWARDS,
     "is no table": "nothing here\n",
     "there must be a heading": GOOD.partition("\n")[2],
     "rate of the frames must be": table("frame,x", ",", TIME, PLACE),
     "12 points or more": SHORT,
-    "x and y are 6.8 mm off a straight line": ON_THE_RIM,
+    "x and y are 13 % of their length off a straight line": ON_THE_RIM,
 }
 """What is said, and of which table."""
 

@@ -79,7 +79,7 @@ class Parser(argparse.ArgumentParser):
                 settings["nargs"] = "+" if option.name.startswith("-") else "*"
             elif option.default is not None:
                 settings["help"] += " (default: %(default)s)"
-            self.add_argument(option.name, **settings)
+            self.add_argument(option.name, *option.synonyms, **settings)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -9,6 +9,7 @@ import math
 import re
 from argparse import ArgumentTypeError, Namespace
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -41,6 +42,7 @@ _MEANINGS = {
     "or of the length of a can that stands",
     "can": "massless (section 2 of the paper), "
     "or metal, of aluminium sheet 0.1 mm thick (section 3)",
+    "can_mass": "mass of a can of metal sheet [kg], if it is not that of --can",
     "radius": "radius of the can [m]",
     "length": "length of the can [m]",
     "liquid": "the liquid, at 20 degrees Celsius",
@@ -104,6 +106,17 @@ def known(text: str) -> tuple[str, tuple[float, float]]:
         ) from None
 
 
+def mark(text: str) -> tuple[float, float, float]:
+    """Read a mark on the board, as "655,398=1": x and y [pixels], and its place [m]."""
+    try:
+        x, y, place = re.split("[,=]", text)
+        return float(x), float(y), float(place)
+    except ValueError:
+        raise ArgumentTypeError(
+            f"it must be x and y [pixels] and the place [m], such as 655,398=1, got {text!r}"
+        ) from None
+
+
 class Option(NamedTuple):
     """An option, or a word if its name has no dashes."""
 
@@ -118,6 +131,8 @@ class Option(NamedTuple):
     """Whether it takes several values."""
     flag: bool = False
     """Whether it takes no value, and is true where it is given."""
+    synonyms: tuple[str, ...] = ()
+    """Other names of the option."""
 
 
 _MODEL = (
@@ -218,6 +233,15 @@ OPTIONS = {
             several=True,
         ),
         Option("--rate", "pictures per second, where frames are numbered and have no times [1/s]"),
+        Option("--scale", "scale of a table in pixels, of a camera square to the board [pixels/m]"),
+        Option(
+            "--marks",
+            "three or more places on the board in a table in pixels, as 102,411=0 655,398=1 "
+            "1190,384=2 [pixels, m]",
+            [],
+            mark,
+            several=True,
+        ),
         Option("--output", "plot (.svg, .png) or film (.mp4) to write", None, Path),
         _JSON,
     ),
@@ -279,6 +303,10 @@ def scene_options(name: str, command: str) -> list[Option]:
     choices = {"can": tuple(_CANS), "liquid": NAMES}
     reads = {"incline": degrees, "modes": int}
     defaults = _defaults(name)
+    synonyms = {}
+    if command == "fit" and "can" in defaults:
+        defaults["can_mass"] = None
+        synonyms["radius"] = ("--can-radius",)
     options = [
         Option(
             "--" + argument.replace("_", "-"),
@@ -286,6 +314,7 @@ def scene_options(name: str, command: str) -> list[Option]:
             defaults[argument],
             reads.get(argument, number),
             choices.get(argument, ()),
+            synonyms=synonyms.get(argument, ()),
         )
         for argument, meaning in _MEANINGS.items()
         if argument in defaults
@@ -360,10 +389,19 @@ def scene_arguments(given: Namespace) -> dict[str, Any]:
 def make(function: Callable[..., Any], **options: Any) -> Any:
     """Return the scene that a function makes from options of the command line."""
     if "can" in options:
-        options["can"] = _CANS[options["can"]](options.pop("radius"), options.pop("length"))
+        can = _CANS[options["can"]](options.pop("radius"), options.pop("length"))
+        options["can"] = _with_mass(can, options.pop("can_mass", None))
     if function in (liquid, liquid_in):
         options["name"] = options.pop("liquid")
     return function(**options)
+
+
+def _with_mass(can: Can, mass: float | None) -> Can:
+    """Return a can of metal sheet with a mass [kg], or the can itself if that is None."""
+    if mass is None:
+        return can
+    sheet = Can.sheet_metal(can.radius, can.length)
+    return replace(can, mass=mass, inertia=sheet.inertia * mass / sheet.mass)
 
 
 def scene(given: Namespace) -> Any:

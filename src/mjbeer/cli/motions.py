@@ -323,7 +323,7 @@ def fit(given: Namespace) -> None:
     for column in given.columns:
         quantity, _, heading = column.partition("=")
         columns[quantity] = heading
-    track = read_track(given.file, columns, given.rate)
+    track = read_track(given.file, columns, given.rate, given.scale, given.marks or None)
     # A warning about a guess says nothing about the fit.
     with warnings.catch_warnings(action="ignore", category=LiquidWarning):
         guess = scene(given)

@@ -18,7 +18,7 @@ def in_words(scene: Scene) -> str:
     else:
         parts = _beer_in_words(scene, scene.load.fill)
     law = scene.damping_law
-    if law:
+    if law and not law.liquid:
         is_linear = law == Damping(law.linear)
         parts.append(f"damping {law.linear:.3g} N m s" if is_linear else "damped")
     if scene.drag:
@@ -29,7 +29,8 @@ def in_words(scene: Scene) -> str:
 
 def _beer_in_words(scene: Scene, fill: float) -> list[str]:
     full = _FILLS.get(fill, f"{100 * fill:.3g} % full")
-    return [f"{full} {_can_in_words(scene)}", f"beer {scene.attachment}"]
+    contents = scene.damping_law.liquid or f"beer {scene.attachment}"
+    return [f"{full} {_can_in_words(scene)}", contents]
 
 
 def _load_in_words(scene: Scene) -> list[str]:

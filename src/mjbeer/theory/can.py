@@ -260,6 +260,8 @@ class Damping:
     """
     coating_rate: float = field(default=math.inf, compare=False, repr=False, kw_only=True)
     """Slip rate [rad/s] from which a film all round the wall can hold a third of that liquid."""
+    liquid: str = field(default="", compare=False, repr=False, kw_only=True)
+    """The name of that liquid."""
 
     def __post_init__(self) -> None:
         require.set_fields(

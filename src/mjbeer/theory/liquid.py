@@ -30,7 +30,7 @@ A swing in a can that rolls on is damped by this polynomial as well, and so more
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, NamedTuple, get_args
 
 import numpy as np
@@ -239,7 +239,7 @@ def liquid_in(
         slip_rate=steady_rate,
         carried=_share_in_film(coating_rate, steady_rate),
         swing=swing,
-        damping=_damping(laws, fitted, coating_rate),
+        damping=replace(_damping(laws, fitted, coating_rate), liquid=name),
     )
 
 

@@ -1,6 +1,7 @@
 """Tracks of filmed cans, and the fit that finds from a track what was in the can.
 
 - `track`: a track, and how it is read from a table.
+- `board`: places on a board, from points of its picture and from marks on it.
 - `unknowns`: the values that a fit looks for, and the variables of the solver.
 - `track_model`: the track that a scene would give without noise.
 - `first_guess`: the values from which the search begins.

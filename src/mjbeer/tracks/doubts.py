@@ -7,10 +7,18 @@ import numpy as np
 from scipy import fft, stats
 
 from mjbeer.tracks.least_squares import Minimum
-from mjbeer.tracks.unknowns import Unknown, motion_slice, to_values
+from mjbeer.tracks.unknowns import Unknown, in_words, motion_slice, to_values
 
 _BY_CHANCE = 1e-3
 """Probability that a right model is doubted because its residuals are smooth by chance."""
+_RAREST = 6
+"""The rarest residuals that a message tells apart: those of noise in one of 10^6 tracks."""
+_STANDARD_ERRORS = 3
+"""A value is doubted if it is off by more of its standard errors."""
+_LEAST_CHANCE = 0.1
+"""The least part of a measurement's error by which the fitted value may differ by chance."""
+LAW_ERROR = 0.1
+"""Relative error of a liquid's damping law itself, that of W^1.5 and its polynomial."""
 _OPEN = 0.3
 """An unknown that may change by this part of a large change is named as left open."""
 
@@ -51,22 +59,45 @@ def _smooth_residuals(minimum: Minimum) -> Iterator[str]:
     kept = minimum.weights.kept[0]
     chance = chance_of_white_noise(minimum.residuals[: len(kept)][kept])
     if chance < _BY_CHANCE:
-        once = f"{1 / max(chance, 1e-99):.0e} tracks"
-        smooth = f"noise is as smooth as what is left once in {once}"
-        yield f"the model is wrong, or the track: {smooth}"
+        power = min(_RAREST, math.floor(-math.log10(max(chance, 1e-99))))
+        rare = f"which is as smooth in fewer than 1 of {10**power:,} tracks"
+        yield f"the model is wrong, or the track: their difference is not like noise, {rare}"
 
 
 def _wrong_measurements(minimum: Minimum, unknowns: Sequence[Unknown]) -> Iterator[str]:
-    """Doubt a measured value that is more than three of its errors from the fitted one."""
+    """Doubt a measured value that is too far from the fitted one.
+
+    If the track tells little about it, the fitted value stays near the measured one even if that is
+    wrong. So the distance is compared with the one to be expected if the measurement is right,
+    whose square is that of the measurement's error less that of the fitted value's.
+    """
     values = to_values(unknowns, minimum.variables)
-    for unknown in unknowns:
+    for unknown, deviation in zip(unknowns, minimum.uncertainty().deviations, strict=True):
         if unknown.measured is None:
             continue
         measured, error = unknown.measured
-        errors_off = abs(values[unknown.name] - measured) / error
-        if errors_off > 3:
-            off = f"{unknown.name} is {errors_off:.1f} of its errors off"
-            yield f"the model is wrong, or what was known: {off}"
+        value = values[unknown.name]
+        left_open = unknown.to_error(value, float(deviation)) / error
+        by_chance = error * math.sqrt(max(1 - left_open**2, _LEAST_CHANCE**2))
+        errors_off = abs(value - measured) / by_chance
+        if errors_off > _STANDARD_ERRORS:
+            off = f"{errors_off:.1f} standard errors off {in_words(unknown.name, measured)}"
+            hint = ""
+            if unknown.name == "bend":
+                hint = "; an oblique camera bends a track, and marks on the board unbend it"
+            there = f"{unknown.name} is {in_words(unknown.name, value)}, {off}"
+            yield f"the model is wrong, or what was known: {there}{hint}"
+
+
+def doubts_of_law(liquid: str, factor: float, error: float) -> tuple[str, ...]:
+    """Doubt a liquid whose damping is farther from its law than the law's own error explains.
+
+    `factor` is the damping divided by the law's, and `error` its standard error.
+    """
+    if abs(factor - 1) <= _STANDARD_ERRORS * math.hypot(error, LAW_ERROR):
+        return ()
+    reasons = f"was it {liquid}, at 20 °C, and did the camera look squarely at the board?"
+    return (f"the damping is {factor:.2g} times that of {liquid}: {reasons}",)
 
 
 def _open_directions(minimum: Minimum, unknowns: Sequence[Unknown]) -> Iterator[str]:
@@ -98,7 +129,7 @@ def _other_motions(
         errors_off = np.abs(other.variables - minimum.variables) / deviations
         if errors_off[of_motion].max(initial=0.0) > 6:
             values = to_values(unknowns[of_motion], other.variables[of_motion])
-            there = ", ".join(f"{name} = {value:.4g}" for name, value in values.items())
+            there = ", ".join(f"{name} {in_words(name, value)}" for name, value in values.items())
             yield f"another motion is as near to the track: {there}"
 
 

@@ -11,7 +11,7 @@ from mjbeer import require
 from mjbeer.exceptions import MjbeerError, ParameterError
 from mjbeer.output import terminal
 from mjbeer.theory.scene import Scene
-from mjbeer.tracks.doubts import doubts
+from mjbeer.tracks.doubts import doubts, doubts_of_law
 from mjbeer.tracks.first_guess import first_guesses
 from mjbeer.tracks.least_squares import (
     Minimum,
@@ -62,7 +62,7 @@ def fit(
         factor on the scene's own law) and "drag" [kg/m].
       known: values that were measured besides the track, by name, each with its standard error;
         they are fitted, too. One may be "scale", the factor by which the track is too long, which
-        otherwise only a tracked roll gives.
+        otherwise only a tracked roll gives, or marks on the board.
       phi0: the load's angle when the can is let go, at rest: a number [rad], "level" for a level
         surface, or "free".
       bend: usual size of the bend of the track by a lens [m]; by default 5 mm, or 1/400 of the
@@ -100,12 +100,17 @@ def fit(
 def _measurements(
     track: Track, known: Mapping[str, tuple[float, float]] | None, bend: float | None
 ) -> dict[str, Measurement]:
-    """Return the measured values by name; a bend of 0, give or take its usual size, is one."""
+    """Return the measured values by name.
+
+    One is a bend of 0, give or take its usual size; another the scale of a board with marks.
+    """
     if bend is None:
         bend = min(BEND, float(np.ptp(track.along)) / 400)
     measured = {}
     if require.non_negative("bend", bend, "m") > 0:
         measured["bend"] = Measurement(0.0, bend)
+    if track.scale_error > 0:
+        measured["scale"] = Measurement(1.0, track.scale_error)
     for name, pair in require.instance("known", {} if known is None else known, dict).items():
         require.choice(f"a name in {require.format_value(known)}", name, NAMES)
         numbers = require.samples(f"known {name}", pair).tolist()
@@ -154,6 +159,10 @@ def _result(model: TrackModel, unknowns: tuple[Unknown, ...], minima: list[Minim
     for unknown, deviation in zip(unknowns, uncertainty.deviations.tolist(), strict=True):
         errors[unknown.name] = unknown.to_error(values[unknown.name], deviation)
     run = model.simulate(values, float(model.track.time[-1]) - values["released"])
+    doubted = doubts(best, alike, unknowns)
+    liquid = run.scene.damping_law.liquid
+    if liquid and "damping" in values:
+        doubted += doubts_of_law(liquid, values["damping"], errors["damping"])
     return Fit(
         track=model.track,
         scene=run.scene,
@@ -161,7 +170,7 @@ def _result(model: TrackModel, unknowns: tuple[Unknown, ...], minima: list[Minim
         errors=errors,
         correlation=uncertainty.correlation,
         noise=dict(zip(model.channels, best.weights.noise[:, 0].tolist(), strict=True)),
-        warnings=(*doubts(best, alike, unknowns), *run.warnings),
+        warnings=(*doubted, *run.warnings),
         run=run,
         model=dict(zip(model.channels, model.predict(values), strict=True)),
     )

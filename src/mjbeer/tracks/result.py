@@ -11,14 +11,12 @@ from mjbeer import require
 from mjbeer.drawing.words import in_words
 from mjbeer.simulation.run import Run
 from mjbeer.theory.scene import Scene
+from mjbeer.tracks.doubts import LAW_ERROR
 from mjbeer.tracks.track import Track
 from mjbeer.tracks.unknowns import FITTABLE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-_LAW_ERROR = 0.1
-"""Relative error of a liquid's damping law itself, that of W^1.5 and its polynomial."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -75,8 +73,8 @@ class Fit:
         if name == "incline":
             return f"incline, less rolling resistance: {line}"
         if name == "damping":
-            of_law = f"± {_LAW_ERROR * value:.2g} of the law itself"
-            return f"damping over its law: {line}, and {of_law}"
+            of_law = f"± {LAW_ERROR * value:.2g} of the law itself"
+            return f"damping as a multiple of its law: {line}, and {of_law}"
         return f"{name}: {line}"
 
     @property

@@ -6,22 +6,18 @@ import math
 import os
 import pathlib
 import re
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
 
 from mjbeer import require
 from mjbeer.exceptions import ParameterError
+from mjbeer.tracks.board import Line, line_through, perspective
 
 _FEWEST_POINTS = 12
 """The fewest points of a track: twice the usual number of unknowns of a fit."""
-_LARGEST_ASIDE = 0.02
-"""Largest distance (rms) of the axis's points from their straight line, as a share of its length.
-
-A mark on the rim is farther from its line on tracks of up to a metre.
-"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,7 +26,8 @@ class Track:
 
     `time` is by any clock [s]. `along` is the place of the can's axis along the incline [m], and
     `roll` is the angle of a mark on the can [rad]: both may begin anywhere, and grow downhill.
-    `phi` is the load's angle to the incline [rad].
+    `phi` is the load's angle to the incline [rad]. `scale_error` is the relative standard error of
+    all distances, as it follows from marks on the board; 0 if none is known.
 
     Raises:
       ParameterError: if an array is not finite, they differ in length, the times do not increase,
@@ -41,6 +38,7 @@ class Track:
     along: np.ndarray
     roll: np.ndarray | None = None
     phi: np.ndarray | None = None
+    scale_error: float = field(default=0.0, kw_only=True)
 
     def __post_init__(self) -> None:
         for name in ("time", *self.channels):
@@ -49,6 +47,8 @@ class Track:
             if len(array) != len(self.time):
                 count = f"{len(self.time)}, got {len(array)}"
                 raise ParameterError(f"{name} must have as many entries as time, {count}")
+        scale_error = require.non_negative("scale_error", self.scale_error)
+        require.set_fields(self, scale_error=scale_error)
         enough = len(self.time) >= _FEWEST_POINTS
         later = bool((np.diff(self.time) > 0).all())
         moved = bool(np.ptp(self.along) > 0)
@@ -97,6 +97,8 @@ _COLUMNS = {
     "phi": _Column(_ANGLES, "phi|φ"),
 }
 """The quantities that are read. `docs/live.html` has the same table."""
+_PIXELS = {"px": 1.0, "pixel": 1.0, "pixels": 1.0}
+"""The units of x and y in a picture."""
 _TITLE = re.compile(
     r"(?:latest *:)?(?:run *#?\d+ *[:|])? *([^\[(]*[^\[( ])? *(?:[\[(] *(.*?) *[\])])?"
 )
@@ -113,6 +115,8 @@ def read_track(
     path: str | os.PathLike[str],
     columns: Mapping[str, str | int] | None = None,
     rate: float | None = None,
+    scale: float | None = None,
+    marks: Sequence[Sequence[float]] | None = None,
 ) -> Track:
     """Return the track in a table: a text with tabs, semicolons, commas or spaces between columns.
 
@@ -127,17 +131,32 @@ def read_track(
       columns: the headings, or the numbers from 1 on, of the columns "time", "frame", "x", "y",
         "roll" and "phi"; columns with usual headings need not be named.
       rate: the rate of numbered frames [1/s].
+      scale: pixels a metre, if the places in the table are in pixels of a camera that looked
+        squarely at the board.
+      marks: three or more points of the line along which the axis went, or of one beside it: x and
+        y in the table's pixels, and the place on the board [m]. The places in the table are in
+        pixels, too; their perspective is that of the marks.
 
     Raises:
       ParameterError: if the table cannot be read; the message has line and column.
     """
     source = require.path(path)
+    in_pixels = ""
+    if scale is not None:
+        scale = require.positive("scale", scale, "pixels/m")
+        in_pixels = f"a scale of {require.format_value(scale)} pixels/m"
+    board = None
+    if marks is not None:
+        board = perspective(marks)
+        if in_pixels:
+            raise ParameterError(f"marks have a scale of their own, got {in_pixels} as well")
+        in_pixels = "a board with marks in pixels"
     columns = require.instance("columns", {} if columns is None else columns, dict)
     rows = _rows(source)
     heading = _heading_line(source, rows)
     titles = rows[heading]
     data = {line: row for line, row in rows.items() if line > heading}
-    used = _used_columns(f"{source}, line {heading}", titles, columns)
+    used = _used_columns(f"{source}, line {heading}", titles, columns, in_pixels)
     if "frame" in used:
         interval = 1 / require.positive("rate of the frames", rate, "1/s")
         used["time"] = _Used(used.pop("frame").index, interval)
@@ -150,10 +169,21 @@ def read_track(
     for cell, interval in zip(cells["time"][1:], np.diff(arrays["time"]), strict=True):
         if interval <= 0:
             raise ParameterError(f"{cell.place}: this time is not later than the one before")
+    if board and "y" not in arrays:
+        raise ParameterError(f"{source}, line {heading}: with marks, x and y are needed")
     along = arrays["x"]
+    scale_error = 0.0
     if "y" in arrays:
-        along = _along_line(source, along, arrays["y"])
-    return Track(arrays["time"], along, arrays.get("roll"), arrays.get("phi"))
+        points = np.stack([arrays["x"], arrays["y"]], axis=1)
+        along = _line(source, points).places(points)
+        if board:
+            along = _downhill(board.places(points))
+            scale_error = board.scale_error(points)
+    if scale is not None:
+        along = along / scale
+    roll = arrays.get("roll")
+    phi = arrays.get("phi")
+    return Track(arrays["time"], along, roll, phi, scale_error=scale_error)
 
 
 def _rows(source: pathlib.Path) -> dict[int, list[str]]:
@@ -199,9 +229,12 @@ def _heading_line(source: pathlib.Path, rows: dict[int, list[str]]) -> int:
 
 
 def _used_columns(
-    place: str, titles: list[str], columns: Mapping[str, str | int]
+    place: str, titles: list[str], columns: Mapping[str, str | int], in_pixels: str
 ) -> dict[str, _Used]:
-    """Return the columns that are read; `titles` are the headings, `place` their file and line."""
+    """Return the columns that are read; `titles` are the headings, `place` their file and line.
+
+    `in_pixels` is what turns places in pixels into ones in metres, or "" if they are in metres.
+    """
     if not set(columns) <= set(_COLUMNS):
         got = require.format_value(columns)
         raise ParameterError(f"columns are those of {', '.join(_COLUMNS)}, got {got}")
@@ -210,7 +243,8 @@ def _used_columns(
         index = _column_index(place, titles, name, str(columns.get(name, "")))
         if index is None or (name == "frame" and "time" in used):
             continue
-        used[name] = _Used(index, _unit_in_si(place, titles, name, index))
+        where = f"{place}, column {index + 1}"
+        used[name] = _Used(index, _size_of_unit(where, titles[index], name, in_pixels))
     if "x" not in used or not used.keys() & {"time", "frame"}:
         needed = f"time and x are needed; say which columns they are, of {titles}"
         raise ParameterError(f"{place}: {needed}")
@@ -237,14 +271,19 @@ def _is_meant(title: str, number: int, asked: str, usual: str) -> bool:
     return re.fullmatch(usual, heading) is not None
 
 
-def _unit_in_si(place: str, titles: list[str], name: str, index: int) -> float:
+def _size_of_unit(where: str, title: str, name: str, in_pixels: str) -> float:
     """Return the size of a column's unit in SI's, which is 1 if its heading has no unit."""
-    title = titles[index]
     units = _COLUMNS[name].units
+    instead = ""
+    if name in ("x", "y"):
+        instead = ", or pixels with a scale or marks"
+        if in_pixels:
+            units = _PIXELS
+            instead = f" with {in_pixels}"
     _, unit = _name_and_unit(title)
     if unit and unit not in units:
-        allowed = f"the unit of {name} is one of {', '.join(units)}"
-        raise ParameterError(f"{place}, column {index + 1}: {allowed}, got {title!r}")
+        allowed = f"the unit of {name} is one of {', '.join(units)}{instead}"
+        raise ParameterError(f"{where}: {allowed}, got {title!r}")
     return units.get(unit, 1.0)
 
 
@@ -304,16 +343,15 @@ def _number(cell: _Cell, comma: str | None) -> float:
     raise ParameterError(f"{cell.place}: {text!r} is no number{among}")
 
 
-def _along_line(source: pathlib.Path, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Return places [m] along the straight line through points, from their middle.
+def _line(source: pathlib.Path, points: np.ndarray) -> Line:
+    """Return the straight line through points, shape (points, 2), that are those of the axis."""
+    try:
+        return line_through("x and y", points)
+    except ParameterError as error:
+        hint = "track the can's axis, not a mark on its rim"
+        raise ParameterError(f"{source}: {error}; {hint}") from None
 
-    The line has the least squares of distances; places grow in the direction of the motion.
-    """
-    points = np.stack([x - x.mean(), y - y.mean()], axis=1)
-    _, sizes, directions = np.linalg.svd(points, full_matrices=False)
-    along = points @ directions[0]
-    aside = sizes[1] / math.sqrt(len(x))
-    if aside > _LARGEST_ASIDE * np.ptp(along):
-        off = f"x and y are {1e3 * aside:.2g} mm off a straight line (rms)"
-        raise ParameterError(f"{source}: {off}; track the can's axis, not a mark on its rim")
-    return along * math.copysign(1.0, -along[0])
+
+def _downhill(places: np.ndarray) -> np.ndarray:
+    """Return places [m] that grow in the direction in which the can went, as those of `_line`."""
+    return places * math.copysign(1.0, places.mean() - places[0])

@@ -162,6 +162,15 @@ def to_values(unknowns: Sequence[Unknown], variables: np.ndarray) -> dict[str, f
     return {unknown.name: unknown.to_value(variable) for unknown, variable in pairs}
 
 
+def in_words(name: str, value: float) -> str:
+    """Return the value of an unknown with its unit, angles in degrees and lengths in mm."""
+    if name in ("incline", "phi0", "turned"):
+        return f"{math.degrees(value):.3g}°"
+    if name in ("place", "bend"):
+        return f"{1e3 * value:.2g} mm"
+    return f"{value:.3g}"
+
+
 def motion_slice(unknowns: Sequence[Unknown]) -> slice:
     """Return the slice of the unknowns of the motion, which come first."""
     return slice(sum(unknown.name in OF_MOTION for unknown in unknowns))
