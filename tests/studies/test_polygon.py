@@ -104,7 +104,7 @@ def test_mujocos_meshes_of_the_table_end_where_theory_says(facets: int) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("rolled", polygon.physx_prisms()[:4], ids=lambda rolled: rolled.asked)
+@pytest.mark.parametrize("rolled", polygon.physx_prisms()[:3], ids=lambda rolled: rolled.asked)
 def test_physx_rolls_the_hull_that_it_has_kept(rolled: polygon.PhysxPrism) -> None:
     """Its two ends differ, and a prism with two ends rolls between them: their mean is meant. The
     hull of 32 has an end on which it would lie still."""
@@ -119,10 +119,10 @@ def test_physx_rolls_the_hull_that_it_has_kept(rolled: polygon.PhysxPrism) -> No
 
 
 @pytest.mark.costly
-@pytest.mark.parametrize("rolled", polygon.physx_prisms()[4:], ids=lambda rolled: rolled.asked)
-def test_so_does_it_in_a_world_of_thirty_times_the_size(rolled: polygon.PhysxPrism) -> None:
+@pytest.mark.parametrize("rolled", polygon.physx_prisms()[3:], ids=lambda rolled: rolled.asked)
+def test_so_does_it_with_more_facets_and_in_a_larger_world(rolled: polygon.PhysxPrism) -> None:
     theory = np.mean([polygon.theory_end(edges) for edges in (rolled.left, rolled.right)])
-    assert theory == pytest.approx(rolled.end["1e-4"], rel=0.02)
+    assert theory == pytest.approx(rolled.end["1e-4"], rel=0.05)
 
 
 def test_what_is_no_prism_or_does_not_roll_is_refused() -> None:

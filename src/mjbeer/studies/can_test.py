@@ -83,7 +83,7 @@ _MJCF = """
   <default><geom friction="1 0.005 0.0001"/></default>
   {asset}
   <worldbody>
-    <geom type="plane" size="200 20 1" {contact}/>
+    <geom type="plane" size="200 20 1" {floor}/>
     <body pos="0 0 {radius!r}">
       <freejoint/>
       <inertial pos="0 0 {below!r}" mass="{mass!r}" diaginertia="{across_axis!r} {inertia!r} {across_axis!r}"/>
@@ -100,12 +100,13 @@ def free_body(
     option: str = 'integrator="RK4"',
     contact: str = "",
     edges: Sequence[float] = (),
+    floor: str | None = None,
 ) -> mujoco.MjModel:
     """Return MuJoCo's model of a case: gravity is inclined, and the incline lies level.
 
-    `option` and `contact` are attributes, of `<option>` and of both geoms. The body is a cylinder,
-    or if there are `edges` a mesh: a prism with an edge at each of these angles from the downward
-    direction towards +x [rad].
+    `option` and `contact` are attributes, of `<option>` and of both geoms; `floor` are those of the
+    incline if they differ. The body is a cylinder, or if there are `edges` a mesh: a prism with an
+    edge at each of these angles from the downward direction towards +x [rad].
     """
     scene = case.scene
     can = scene.can
@@ -127,6 +128,7 @@ def free_body(
         across=-scene.gravity * math.cos(scene.incline),
         option=option,
         contact=contact,
+        floor=contact if floor is None else floor,
         asset=asset,
         shape=shape,
         radius=can.radius,
