@@ -13,7 +13,8 @@ from mjbeer.drawing.words import in_words
 from mjbeer.paper import stories
 from mjbeer.report import films
 from mjbeer.report.films import FILMS
-from mjbeer.theory.liquid import LIQUIDS, liquid, liquid_in
+from mjbeer.theory.liquid import liquid, liquid_in
+from mjbeer.theory.liquid_properties import LIQUIDS
 from mjbeer.theory.trajectory import Trajectory
 
 OF_MOTIONS = {name: film for name, film in FILMS.items() if isinstance(film, Race | MotionFilm)}

@@ -16,7 +16,7 @@ import quickjs
 
 from mjbeer import Can, Scene, exact, frozen, liquid, read_track, sliding
 from mjbeer.theory import can
-from mjbeer.theory.liquid import LIQUIDS
+from mjbeer.theory.liquid_properties import LIQUIDS
 from mjbeer.theory.scene import GRAVITY
 from mjbeer.tracks.track import _COLUMNS, _COMMA, _GROUPED, _POINT, _TITLE
 from tests.support.tables import TABLES, THOUSANDS, UNCLEAR

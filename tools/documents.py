@@ -40,7 +40,8 @@ from mjbeer.studies.stability.judge import (
 from mjbeer.studies.validation.validate import checks
 from mjbeer.theory import slosh
 from mjbeer.theory.can import Can
-from mjbeer.theory.liquid import LIQUIDS, NAMES, centrifugal_ratio, liquid_in
+from mjbeer.theory.liquid import centrifugal_ratio, liquid_in
+from mjbeer.theory.liquid_properties import LIQUIDS, NAMES
 from mjbeer.theory.paper_scenes import frozen, sliding
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory

@@ -19,7 +19,8 @@ from mjbeer.output.plots import COLOURS, GREY, REFERENCE, THEORY, chart, name_be
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory import slosh
 from mjbeer.theory.can import THICKNESS, Can, Damping
-from mjbeer.theory.liquid import LIQUIDS, NAMES, centrifugal_ratio, liquid, liquid_in
+from mjbeer.theory.liquid import centrifugal_ratio, liquid, liquid_in
+from mjbeer.theory.liquid_properties import LIQUIDS, NAMES
 from mjbeer.theory.paper_scenes import frozen, sliding
 from mjbeer.theory.scene import GRAVITY, INCLINE, Scene
 from mjbeer.theory.segment import segment

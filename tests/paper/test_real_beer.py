@@ -12,7 +12,8 @@ from scipy.optimize import brentq
 
 from mjbeer import Can, LiquidWarning, Load, Scene, exact, liquid, simulate, sliding
 from mjbeer.theory import slosh
-from mjbeer.theory.liquid import FILM_LOAD, LIQUIDS
+from mjbeer.theory.liquid_damping import FILM_LOAD
+from mjbeer.theory.liquid_properties import LIQUIDS
 from mjbeer.theory.scene import GRAVITY
 
 sys.path.append(str(pathlib.Path(__file__).parents[2] / "docs" / "figures"))
@@ -116,7 +117,7 @@ def test_a_nearly_full_can_is_as_fast_as_a_full_one(
 ) -> None:
     """The scene has a steady layer, the exact theory one that grows: they share the viscosity."""
     # The exact theory has no ends of the can.
-    monkeypatch.setattr("mjbeer.theory.liquid.ENDS", 0.0)
+    monkeypatch.setattr("mjbeer.theory.liquid_damping.ENDS", 0.0)
     full = 2 / metre_of_a_full_can(incline) ** 2 / (GRAVITY * math.sin(incline))
     assert first_metre(400.0, incline) == pytest.approx(full, abs=4e-3)
 

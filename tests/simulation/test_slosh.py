@@ -9,7 +9,7 @@ import pytest
 from mjbeer import Can, Load, Scene, attach, liquid, simulate
 from mjbeer.model.setting import ROLLINGS, Rolling
 from mjbeer.theory import slosh
-from mjbeer.theory.liquid import LIQUIDS
+from mjbeer.theory.liquid_properties import LIQUIDS
 from tests.support import slosh_judge
 from tests.support.scenes import METAL
 from tests.support.slosh_judge import Judge

@@ -13,7 +13,9 @@ from scipy.optimize import brentq
 from mjbeer import Can, LiquidWarning, Load, Scene, exact, liquid, sliding
 from mjbeer.theory import slosh
 from mjbeer.theory.equations import accelerations, resting_tilt, slip_rate_of
-from mjbeer.theory.liquid import ENDS, FILM_LOAD, LIQUIDS, WALL, liquid_in, lump_warning
+from mjbeer.theory.liquid import liquid_in, lump_warning
+from mjbeer.theory.liquid_damping import ENDS, FILM_LOAD, WALL
+from mjbeer.theory.liquid_properties import LIQUIDS
 from mjbeer.theory.segment import segment
 from tests.support.scenes import METAL
 

@@ -11,7 +11,7 @@ import pytest
 from mjbeer import Can, Load, Scene
 from mjbeer.exceptions import ParameterError
 from mjbeer.theory import slosh
-from mjbeer.theory.liquid import LIQUIDS
+from mjbeer.theory.liquid_properties import LIQUIDS
 from mjbeer.theory.segment import segment
 from tests.support.lying_laplace import Section
 

@@ -22,7 +22,8 @@ from mjbeer.model.setting import LOOKS, MJBEER_INTEGRATORS, MUJOCO_INTEGRATORS, 
 from mjbeer.output.terminal import say
 from mjbeer.studies.benchmark.points import CASES
 from mjbeer.theory.can import LENGTH, RADIUS, Can
-from mjbeer.theory.liquid import NAMES, liquid, liquid_in
+from mjbeer.theory.liquid import liquid, liquid_in
+from mjbeer.theory.liquid_properties import NAMES
 from mjbeer.theory.paper_scenes import frozen, hoop, pendulum, sliding
 from mjbeer.theory.scene import DURATION, Scene
 from mjbeer.theory.standing import standing

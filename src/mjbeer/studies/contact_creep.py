@@ -19,7 +19,8 @@ from mjbeer.output.terminal import Table
 from mjbeer.studies import can_test
 from mjbeer.studies.can_test import Case, Errors, Motion
 from mjbeer.theory import soft_contact
-from mjbeer.theory.scene import Scene, frozen
+from mjbeer.theory.paper_scenes import frozen
+from mjbeer.theory.scene import Scene
 from mjbeer.theory.soft_contact import Cone, SoftContact
 
 TIMESTEPS = (1e-3, 1e-4)

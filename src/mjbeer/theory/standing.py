@@ -17,7 +17,7 @@ import numpy as np
 from mjbeer import require
 from mjbeer.exceptions import LiquidWarning, ParameterError, warn_of_liquid
 from mjbeer.theory.can import Can
-from mjbeer.theory.liquid import LIQUIDS, NAMES
+from mjbeer.theory.liquid_properties import LIQUIDS, NAMES
 from mjbeer.theory.scene import GRAVITY
 
 QUANTITATIVE = 0.1

@@ -13,7 +13,8 @@ from mjbeer.studies.stability.random_picker import (
     signed,
 )
 from mjbeer.theory.can import Can, Damping, Load
-from mjbeer.theory.liquid import NAMES, liquid
+from mjbeer.theory.liquid import liquid
+from mjbeer.theory.liquid_properties import NAMES
 from mjbeer.theory.paper_scenes import frozen, hoop, pendulum, sliding
 from mjbeer.theory.scene import ATTACHMENTS, GRAVITY, Scene
 
