@@ -15,8 +15,11 @@ import pytest
 import quickjs
 
 from mjbeer import Can, Scene, exact, frozen, liquid, read_track, sliding
-from mjbeer.theory import can
+from mjbeer.theory import can, slosh
+from mjbeer.theory.equations import resting_tilt, slip_rate_of
+from mjbeer.theory.liquid import liquid_in
 from mjbeer.theory.liquid_properties import LIQUIDS
+from mjbeer.theory.liquid_swing import LEAST_SHARE, ONE_MODE, THICKEST_LAYER
 from mjbeer.theory.scene import GRAVITY
 from mjbeer.tracks.track import _COLUMNS, _COMMA, _GROUPED, _POINT, _TITLE
 from tests.support.tables import TABLES, THOUSANDS, UNCLEAR
@@ -33,6 +36,7 @@ ICE = 917.0  # its density [kg/m^3], as in the film that the lecture shows
 # Largest error of phi and of distance / radius [rad]: 8e-10 was measured, and 6e-6 if no step ends
 # where |w| has a corner.
 AGREES = 1e-8
+USUAL_CAN = {"radius": can.RADIUS, "canMass": Can.sheet_metal().mass}
 
 
 Case = tuple[dict[str, Any], list[float]]
@@ -44,8 +48,14 @@ def script(code: str, given: str = PHYSICS) -> Any:
     return json.loads(quickjs.Context().eval(f"{given}\nJSON.stringify({code})"))
 
 
+def can_of(radius: float, mass: float) -> Can:
+    """A can of thin sheet, as long as the page has it."""
+    sheet = Can.sheet_metal(radius)
+    return Can(radius, sheet.length, mass, sheet.inertia * mass / sheet.mass)
+
+
 def scene_of(setting: dict[str, Any]) -> Scene:
-    wall = Can.sheet_metal() if setting["metal"] else Can.massless()
+    wall = can_of(setting["radius"], setting["canMass"])
     incline = setting["incline"]
     fill = setting["fill"]
     match setting["inside"]:
@@ -62,7 +72,7 @@ def require_agreement(cases: list[Case], within: float = AGREES) -> None:
     for (setting, times), motion in zip(cases, motions, strict=True):
         truth = exact(scene_of(setting), times, setting["phi0"])
         assert np.abs(motion["phi"] - truth.phi).max() < within, setting
-        assert np.abs(motion["distance"] - truth.distance).max() < within * can.RADIUS, setting
+        assert np.abs(motion["distance"] - truth.distance).max() < within * setting["radius"]
         # In forces the rates, up to 1000 rad/s, count squared.
         assert np.abs(motion["normal"] - truth.forces.normal).max() < 1e3 * within, setting
         assert np.abs(motion["friction"] - truth.forces.friction).max() < 1e3 * within, setting
@@ -77,7 +87,8 @@ def random_cases(count: int) -> list[Case]:
             "incline": math.radians(random.uniform(0, 30)) * (k % 10 > 0),
             "fill": random.uniform(0.05, 1.0),
             "inside": INSIDE[k % 7],
-            "metal": k % 2 == 0,
+            "radius": random.uniform(0.025, 0.04),
+            "canMass": random.uniform(0.002, 0.05) * (k % 3 > 0),
             "phi0": random.uniform(-math.pi, math.pi),
         }
         times = random.uniform(0, random.uniform(0.2, 3), random.integers(1, 20))
@@ -86,16 +97,20 @@ def random_cases(count: int) -> list[Case]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("count", [14, pytest.param(200, marks=pytest.mark.costly)])
-def test_its_motions_are_those_of_exact_theory(count: int) -> None:
-    require_agreement(random_cases(count))
+@pytest.mark.parametrize(
+    ("count", "within"),
+    # Among many, some load just gets over its top, beside a separatrix: 2e-7 was measured.
+    [(14, AGREES), pytest.param(200, 1e-6, marks=pytest.mark.costly)],
+)
+def test_its_motions_are_those_of_exact_theory(count: int, within: float) -> None:
+    require_agreement(random_cases(count), within)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("inside", ["no friction", "ice"])
 def test_so_they_are_beside_a_separatrix(inside: str) -> None:
     """Down to 1e-4 rad, nearer than anybody can let go: there an error grows 1e5 times."""
-    setting = {"incline": 0.1, "fill": 0.4, "inside": inside, "metal": True}
+    setting = {"incline": 0.1, "fill": 0.4, "inside": inside} | USUAL_CAN
     ends = scene_of(setting).separatrix()
     beside = [side * distance for side in (1, -1) for distance in (1e-2, 1e-3, 1e-4)]
     starts = [end + offset for end in ends for offset in beside]
@@ -103,20 +118,57 @@ def test_so_they_are_beside_a_separatrix(inside: str) -> None:
 
 
 def test_balanced_and_full_cans_are_those_of_theory() -> None:
-    level = {"incline": 0.0, "fill": 0.5, "metal": True, "phi0": math.pi}
-    steep = {"incline": 0.2, "fill": 0.5, "inside": "no friction", "metal": False, "phi0": math.pi}
-    full = {"incline": 0.2, "fill": 1, "metal": True, "phi0": 1.0}
+    level = {"incline": 0.0, "fill": 0.5, "phi0": math.pi} | USUAL_CAN
+    steep = {**level, "incline": 0.2, "inside": "no friction", "canMass": 0.0}
+    full = {"incline": 0.2, "fill": 1, "phi0": 1.0} | USUAL_CAN
     settings = [steep]
     settings += [{**level, "inside": inside} for inside in INSIDE]
     settings += [{**full, "inside": inside} for inside in ("no friction", "ice")]
     require_agreement([(setting, [0.0, 2.0]) for setting in settings])
 
 
+def test_an_empty_can_speeds_up_evenly() -> None:
+    """By the rolling of a body with the mass and the inertia of the can alone."""
+    setting = {"incline": 0.1, "fill": 0.5, "inside": "nothing", "phi0": 1.0} | USUAL_CAN
+    wall = Can.sheet_metal()
+    acceleration = wall.mass / wall.effective_mass * GRAVITY * math.sin(0.1)
+    motion = script(f"motion({json.dumps(setting)}, [0.5, 2])")
+    assert motion["distance"] == pytest.approx([acceleration / 8, 2 * acceleration], rel=1e-10)
+    assert motion["normal"] == pytest.approx(2 * [wall.mass * GRAVITY * math.cos(0.1)])
+
+
 def test_its_constants_are_those_of_theory() -> None:
-    liquids, *numbers = script("[LIQUIDS, RADIUS, LENGTH, SHEET, GRAVITY, BEER]")
+    names = "[LIQUIDS, LENGTH, GRAVITY, BEER, FILLS, THICKEST_LAYER, LEAST_SHARE, ONE_MODE]"
+    liquids, length, gravity, beer, fills, *limits = script(names)
     assert liquids == {name: properties._asdict() for name, properties in LIQUIDS.items()}
-    sheet = can.THICKNESS * can.ALUMINIUM
-    assert numbers == [can.RADIUS, can.LENGTH, sheet, GRAVITY, can.BEER]
+    assert [length, gravity, beer] == [can.LENGTH, GRAVITY, can.BEER]
+    assert tuple(fills) == slosh.FILLS
+    assert limits == [THICKEST_LAYER, LEAST_SHARE, ONE_MODE]
+    assert script("LARGEST_TILT") == slosh.LARGEST_TILT
+
+
+@pytest.mark.slow
+def test_what_it_warns_of_are_the_numbers_of_theory() -> None:
+    """The share of the slowest mode, the tilt of the surface, and the slip rates that are valid."""
+    for setting, times in random_cases(14):
+        if setting["inside"] not in LIQUIDS:
+            continue
+        wall = can_of(setting["radius"], setting["canMass"])
+        used = liquid_in(setting["inside"], setting["incline"], setting["fill"], wall)
+        code = f"(() => {{const it = scene({json.dumps(setting)}); return IT;}})()"
+        told = script(code.replace("IT", "[it.sloshes, it.share ?? null, it.holds, it.coatsAt]"))
+        valid_rates = pytest.approx(list(used.damping.valid_rates or ()), rel=1e-9)
+        coating_rate = pytest.approx(used.damping.coating_rate, rel=1e-9)
+        share = None if used.swing.share is None else pytest.approx(used.swing.share, rel=1e-9)
+        assert told == [not used.swing.as_ice, share, valid_rates, coating_rate], setting
+        if not used.swing.as_ice:
+            truth = exact(scene_of(setting), times, setting["phi0"])
+            rest = resting_tilt(truth.scene, truth.phi_dot, truth.u_dot)
+            slips = slip_rate_of(truth.scene, truth.phi_dot, truth.u_dot)
+            states = np.column_stack([truth.phi, slips]).tolist()
+            tilts = f"{states}.map(([phi, slip]) => tilt(it, phi, slip, {setting['phi0']}))"
+            expected = pytest.approx(np.abs(truth.phi - rest), abs=1e-9)
+            assert script(code.replace("IT", tilts)) == expected
 
 
 @pytest.mark.parametrize(("can", "inside"), [("a", "honey"), ("b", "ice")])
@@ -133,7 +185,7 @@ def test_honey_and_ice_take_the_times_that_the_lecture_has(can: str, inside: str
     assert given[f"{can}-inside"] == inside
     setting = {
         "inside": inside,
-        "metal": True,
+        **USUAL_CAN,
         "fill": float(given[f"{can}-fill"]) / 100,
         "incline": math.radians(float(given["incline"])),
         "phi0": math.radians(float(given[f"{can}-phi0"])),
@@ -152,6 +204,8 @@ def test_honey_and_ice_take_the_times_that_the_lecture_has(can: str, inside: str
         {"inside": "water", "fill": 1},
         {"fill": 0},
         {"phi0": None},
+        {"radius": 0},
+        {"inside": "nothing", "canMass": 0},
         {"times": [-1]},
     ],
 )
@@ -160,7 +214,7 @@ def test_what_is_not_allowed_is_refused(wrong: dict[str, Any]) -> None:
         "incline": 0.1,
         "fill": 0.5,
         "inside": "ice",
-        "metal": True,
+        **USUAL_CAN,
         "phi0": 1,
         "times": [1],
     } | wrong
