@@ -25,6 +25,8 @@ from mjbeer.studies.benchmark import benchmark_tables
 from mjbeer.studies.benchmark.benchmark_tables import RK4
 from mjbeer.studies.benchmark.other_tools import COMPILED_DOP853, HEYOKA, ODEINT
 from mjbeer.studies.benchmark.points import SHIPPED, Benchmark
+from mjbeer.studies.engines import engine_plot, engine_tables, findings
+from mjbeer.studies.engines.results import Results
 from mjbeer.studies.stability import stability_maps, stability_study
 from mjbeer.studies.stability.judge import (
     BOTH,
@@ -53,6 +55,7 @@ DOCUMENTS = [CHECKOUT / "README.md", *sorted(CHECKOUT.glob("docs/*.md"))]
 COUNTS = json.loads((CHECKOUT / "docs" / "stability.json").read_text(encoding="utf-8"))
 BENCHMARK = Benchmark.load(SHIPPED)
 MAPS = stability_maps.load().maps
+ENGINES = Results.load()
 MARKED = re.compile(r"(<!-- made: (?P<name>[\w-]+) -->\n).*?(<!-- end -->)", re.DOTALL)
 LEFT_OUT = ("sliding-metal",)  # it takes as long as the massless can, within 5 %
 PEERS = {"mujoco": "MuJoCo", "scipy": "SciPy", "numba": "numba", "heyoka": "heyoka"}
@@ -473,14 +476,60 @@ def with_water(volume: float, friction: float = 1.0, drag: float = 0.0) -> Traje
         return real_beer.let_go(scene, real_beer.times_of(scene))
 
 
+def engines() -> str:
+    """The answer of the can test, in two sentences."""
+    return prose(findings.answer(ENGINES))
+
+
+def engine_errors() -> str:
+    """Errors of a can in physics engines."""
+    return engine_tables.errors(ENGINES).markdown()
+
+
+def engine_conservation() -> str:
+    """What else should not change while a can rolls."""
+    return engine_tables.conservation(ENGINES).markdown()
+
+
+def engine_tuning() -> str:
+    """What was tuned."""
+    return engine_tables.tuning(ENGINES).markdown()
+
+
+def engine_findings() -> str:
+    """What the table of errors shows, with causes and sources."""
+    return "\n".join(f"- {textwrap.fill(found, 130)}" for found in findings.findings(ENGINES))
+
+
+def engine_versions() -> str:
+    """What was measured, and on which machine."""
+    return prose(engine_tables.measured(ENGINES))
+
+
 _OF_THE_PAPER = (holds, misprints)
 _OF_THE_BENCHMARK = (others, whole_calls, ranges, measured, long_run, contact)
 _OF_STABILITY = (steps, agreement, damped, damped_runs, kinds, honesty)
 _OF_REAL_BEER = (speeds, metre)
-_ALL = (*_OF_THE_PAPER, gauss_jackson, *_OF_THE_BENCHMARK, *_OF_STABILITY, *_OF_REAL_BEER)
+_OF_ENGINES = (
+    engines,
+    engine_errors,
+    engine_conservation,
+    engine_tuning,
+    engine_findings,
+    engine_versions,
+)
+_ALL = (
+    *_OF_THE_PAPER,
+    gauss_jackson,
+    *_OF_THE_BENCHMARK,
+    *_OF_STABILITY,
+    *_OF_REAL_BEER,
+    *_OF_ENGINES,
+)
 MADE = {made.__name__.replace("_", "-"): made for made in _ALL}
 """What makes the text between two marks, by their name."""
 
 if __name__ == "__main__":
+    engine_plot.draw(ENGINES, CHECKOUT / "renders" / "engines")
     for document in DOCUMENTS:
         document.write_text(anew(document.read_text(encoding="utf-8")), encoding="utf-8")

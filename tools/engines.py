@@ -196,7 +196,7 @@ def main() -> None:
             parser.error(f"there is no engine {only!r}; allowed are {', '.join(names)}")
         paths = [FOLDER / f"{only}{_ENDING}.py"]
         if RESULTS.exists():
-            results = Results.load()
+            results = Results.load(RESULTS)
             results.drop(paths[0].stem)
     unfinished = ENVIRONMENTS / f"unfinished-{only or 'all'}.json"
     if unfinished.exists():

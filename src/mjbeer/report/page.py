@@ -29,6 +29,8 @@ from mjbeer.paper import stories
 from mjbeer.report import films
 from mjbeer.studies.benchmark import benchmark_tables, work_precision
 from mjbeer.studies.benchmark.points import SHIPPED, Benchmark
+from mjbeer.studies.engines import engine_plot, engine_tables, findings
+from mjbeer.studies.engines.results import Results
 from mjbeer.studies.stability import stability_maps
 from mjbeer.studies.study import machine
 from mjbeer.studies.validation.validate import Validation, validate
@@ -36,6 +38,8 @@ from mjbeer.studies.validation.validate import Validation, validate
 _HERE = pathlib.Path(__file__).parent
 _LIVE = (_HERE / "web" / "live.html", _HERE.parents[2] / "docs" / "live.html")
 """Where the race to play is, in a wheel and in a checkout."""
+_ENGINES = "engines"
+"""The picture of the can test."""
 _MAP = "stability-solref"
 """The map on the page; the others lie beside it."""
 _MATHML = {
@@ -103,6 +107,8 @@ def plot_jobs(folder: pathlib.Path) -> list[PlotJob]:
         of_case = replace(benchmark, points=benchmark.of(case))
         draw = partial(work_precision.draw, of_case)
         jobs.append(PlotJob(draw, folder / f"error-{case}", in_memory=True))
+    draw_engines = partial(engine_plot.draw, Results.load())
+    jobs.append(PlotJob(draw_engines, folder / _ENGINES, in_memory=True))
     for story in stories.STORIES:
         jobs.append(PlotJob(story.plot, folder / story.name, in_memory=True))
     for name, draw in stability_maps.figures(stability_maps.load()).items():
@@ -125,6 +131,7 @@ def page(
     environment = Environment(loader=loader, autoescape=True, undefined=StrictUndefined)
     environment.filters |= {"mathml": mathml, "share": share, "marked": _marked, "data": _data}
     benchmark = Benchmark.load(SHIPPED)
+    rolled = Results.load()
     maps = stability_maps.load()
     runs, border = stability_maps.summary(maps.maps)
     claims = paper.claims()
@@ -142,6 +149,9 @@ def page(
         benchmark=benchmark,
         costs=benchmark_tables.tables(benchmark),
         ratio_range=partial(benchmark_tables.ratio_range, benchmark),
+        engines=plots[_ENGINES],
+        engine_tables=[engine_tables.errors(rolled), engine_tables.conservation(rolled)],
+        engines_answer=findings.answer(rolled),
         maps=maps,
         map=plots[_MAP],
         families=stability_maps.FAMILIES,
