@@ -12,6 +12,7 @@ import os
 import pathlib
 import re
 import subprocess
+import sys
 import tomllib
 from collections.abc import Sequence
 from contextlib import closing
@@ -211,4 +212,8 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except KeyboardInterrupt:
+        say("interrupted: the same command goes on from here")
+        sys.exit(130)
