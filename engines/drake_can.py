@@ -38,8 +38,9 @@ SETTINGS = [
     ),
     Setting(
         "cylinder, hydroelastic",
-        "resolution a tenth of the radius",
-        "a compliant cylinder, whose modulus is 1e7 Pa, on a rigid plane; dissipation 10 s/m",
+        "fine mesh",
+        "a compliant cylinder, whose modulus is 1e7 Pa and whose edges are at most a tenth of the "
+        "radius, on a rigid plane; dissipation 10 s/m",
         {"hydroelastic": True, "dissipation": 10.0},
     ),
 ]

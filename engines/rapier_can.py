@@ -1,6 +1,6 @@
 # /// script
 # requires-python = ">=3.11"
-# dependencies = ["rapier3d==0.36.1"]
+# dependencies = ["rapier3d==0.36.1", "numpy==2.4.6"]
 # ///
 """A can in Rapier: a cylinder, or a ball, on a half-space, in single precision."""
 

@@ -78,9 +78,16 @@ def table(
     return Table("", columns, lines, left).markdown()
 
 
-def prose(text: str) -> str:
-    """Return sentences in lines of the documents' width."""
-    return textwrap.fill(text, 130)
+def plain(shown: Table) -> str:
+    """Return a table without its title as Markdown."""
+    return table(shown.columns, shown.rows, shown.left)
+
+
+def prose(text: str, indent: str = "") -> str:
+    """Return sentences in lines of the documents' width; addresses are not broken."""
+    return textwrap.fill(
+        text, 130, subsequent_indent=indent, break_on_hyphens=False, break_long_words=False
+    )
 
 
 def ratio(name: str, error: float) -> str:
@@ -483,22 +490,23 @@ def engines() -> str:
 
 def engine_errors() -> str:
     """Errors of a can in physics engines."""
-    return engine_tables.errors(ENGINES).markdown()
+    return plain(engine_tables.errors(ENGINES))
 
 
 def engine_conservation() -> str:
     """What else should not change while a can rolls."""
-    return engine_tables.conservation(ENGINES).markdown()
+    return plain(engine_tables.conservation(ENGINES))
 
 
 def engine_tuning() -> str:
     """What was tuned."""
-    return engine_tables.tuning(ENGINES).markdown()
+    return plain(engine_tables.tuning(ENGINES))
 
 
 def engine_findings() -> str:
     """What the table of errors shows, with causes and sources."""
-    return "\n".join(f"- {textwrap.fill(found, 130)}" for found in findings.findings(ENGINES))
+    found = findings.findings(ENGINES)
+    return "\n".join(prose(f"- {sentence}", indent="  ") for sentence in found)
 
 
 def engine_versions() -> str:

@@ -4,17 +4,29 @@ import itertools
 import math
 import pathlib
 from collections.abc import Sequence
+from typing import NamedTuple
 
 from matplotlib.axes import Axes
 
-from mjbeer.output.plots import COLOURS, Picture, chart
+from mjbeer.output.plots import COLOURS, GREY, Picture, chart
 from mjbeer.studies.engines.engine_tables import order_cell
 from mjbeer.studies.engines.results import CASES, CurveKey, Results, Row, order_of
 
-_MARKERS = "osD^vPX*<>"
+
+class _Style(NamedTuple):
+    """How the curves of an engine are drawn."""
+
+    colour: str
+    marker: str
+
+
+_STYLES = [
+    _Style(colour, marker)
+    for colour, marker in zip((*COLOURS, "#882255", "#808000", GREY), "osD^vPX*<>", strict=True)
+]
 _CEILING = 100.0
 """Points with larger errors [rad] are not drawn."""
-_FLOOR = 1e-9
+_FLOOR = 2e-9
 """Nor are those with smaller ones: they say nothing of a contact."""
 _LABELS = 1.03
 """Where the labels begin, in widths of a panel."""
@@ -34,7 +46,7 @@ def draw(results: Results, path: pathlib.Path | Picture) -> None:
       OutputError: if a file cannot be written.
     """
     title = "The can test: how well do physics engines roll?"
-    styles = dict(zip(_engines(results), zip(itertools.cycle(COLOURS), _MARKERS), strict=False))
+    styles = dict(zip(_engines(results), itertools.cycle(_STYLES), strict=False))
     with chart(path, len(CASES), 1, 12, 8.2 * len(CASES), title, _SUBTITLE) as panels:
         for axes, case in zip(panels, CASES.values(), strict=True):
             curves = results.curves(case.name)
@@ -42,37 +54,36 @@ def draw(results: Results, path: pathlib.Path | Picture) -> None:
             for key, rows in curves.items():
                 shown = [row for row in rows if _FLOOR < row.error < _CEILING and row.seconds]
                 if shown:
-                    colour, marker = styles[key.engine]
-                    _draw_curve(axes, shown, colour, marker)
+                    _draw_curve(axes, shown, styles[key.engine])
                     ends[key] = shown
             axes.set(xscale="log", yscale="log", title=case.about, ylim=(_FLOOR, _CEILING))
             axes.set_xlabel("processor time of 2 s of motion [ms]")
             axes.set_ylabel("largest error of φ and u/a [rad]")
             axes.xaxis.set_major_formatter("{x:g}")
             axes.minorticks_off()
-            _name_ends(axes, ends, {name: colour for name, (colour, _) in styles.items()})
+            _name_ends(axes, ends, styles)
 
 
 def _engines(results: Results) -> list[str]:
     return list(dict.fromkeys(row.engine for row in results.rows))
 
 
-def _draw_curve(axes: Axes, shown: Sequence[Row], colour: str, marker: str) -> None:
+def _draw_curve(axes: Axes, shown: Sequence[Row], style: _Style) -> None:
     order = order_of(shown)
     converges = order is not None and order.converges
     axes.plot(
         [1e3 * min(row.seconds) for row in shown],
         [row.error for row in shown],
         "-" if shown[0].tuned else "--",
-        marker=marker,
-        color=colour,
-        markerfacecolor=colour if converges else "white",
+        marker=style.marker,
+        color=style.colour,
+        markerfacecolor=style.colour if converges else "white",
         markersize=4.5,
         linewidth=1.2,
     )
 
 
-def _name_ends(axes: Axes, ends: dict[CurveKey, list[Row]], colours: dict[str, str]) -> None:
+def _name_ends(axes: Axes, ends: dict[CurveKey, list[Row]], styles: dict[str, _Style]) -> None:
     """Name the curves to the right of the panel, in the order of their ends."""
     low, high = (math.log10(limit) for limit in axes.get_ylim())
     keys = sorted(ends, key=lambda key: ends[key][-1].error)
@@ -86,11 +97,17 @@ def _name_ends(axes: Axes, ends: dict[CurveKey, list[Row]], colours: dict[str, s
             xy=(1e3 * min(last.seconds), last.error),
             xytext=(_LABELS, height),
             textcoords="axes fraction",
-            color=colours[key.engine],
+            color=styles[key.engine].colour,
             fontsize=8.5,
             va="center",
             annotation_clip=False,
-            arrowprops={"arrowstyle": "-", "color": colours[key.engine], "linewidth": 0.5},
+            arrowprops={
+                "arrowstyle": "-",
+                "color": styles[key.engine].colour,
+                "linewidth": 0.5,
+                "relpos": (0.0, 0.5),
+                "shrinkA": 1,
+            },
         )
 
 

@@ -39,8 +39,12 @@ SENSITIVE = 0.05
 """A row whose error changes by more than this share from a start aside is marked."""
 TIMESTEPS = (4e-3, 2e-3, 1e-3, 4e-4, 1e-4)
 """The timesteps [s] that every engine is tried with."""
+EQUATION = "SciPy"
+"""The tool that is no engine: it integrates the equation of the motion."""
 _FITTED = 1e-3
 """The longest timestep [s] of the fit of an order."""
+_LARGE = 1.0
+"""Where an error is no small one any more [rad]."""
 _CONVERGES = 0.5
 """The least order of what converges; below, the error has a floor."""
 _RADIUS = 0.033
@@ -275,9 +279,15 @@ class Order(NamedTuple):
 
 
 def order_of(rows: Sequence[Row]) -> Order | None:
-    """Return how the error of a curve falls; None if it has fewer than three motions for that."""
+    """Return how the error of a curve falls; None if it cannot be told.
+
+    That takes three motions, and errors that are all below or all above `_LARGE`: the fall from an
+    explosion is no order. The rows of `EQUATION` have tolerances, and so no order in a timestep.
+    """
     fitted = [row for row in rows if row.timestep <= _FITTED and 0 < row.error < math.inf]
-    if len(fitted) < 3:
+    if len(fitted) < 3 or fitted[0].engine == EQUATION:
+        return None
+    if min(row.error for row in fitted) < _LARGE < max(row.error for row in fitted):
         return None
     timesteps = np.log([row.timestep for row in fitted])
     errors = np.log([row.error for row in fitted])
