@@ -26,8 +26,8 @@ _STYLES = [
 ]
 _CEILING = 100.0
 """Points with larger errors [rad] are not drawn."""
-_FLOOR = 2e-9
-"""Nor are those with smaller ones: they say nothing of a contact."""
+_FLOOR = 1e-7
+"""Nor are those with smaller ones: no contact has them."""
 _LABELS = 1.03
 """Where the labels begin, in widths of a panel."""
 _APART = 0.026

@@ -10,6 +10,7 @@ from mjbeer.studies.engines.results import CASES, DURATION, EQUATION, Results, R
 _STIFF = Way("MuJoCo", "cylinder", "stiff contact, RK4")
 _SOFT = Way("MuJoCo", "cylinder", "default")
 _CONSTRAINT = Way("Exudyn", "constraint", "default")
+_DRAKE_MANUAL = "https://drake.mit.edu/doxygen_cxx/group__hydroelastic__user__guide.html"
 _MUJOCO_MANUAL = "https://mujoco.readthedocs.io/en/stable/modeling.html#solver-parameters"
 
 
@@ -125,7 +126,7 @@ def findings(results: Results) -> list[str]:
         "point of a sphere is found anew.",
         "**Drake's hydroelastic cylinder is a mesh**, here with edges of at most a tenth of the "
         f"radius: {read.both(hydroelastic)}. Its point contact has a round cylinder "
-        "([Drake's manual](https://drake.mit.edu/doxygen_cxx/group__hydroelastic__user__guide.html)).",
+        f"([Drake's manual]({_DRAKE_MANUAL})).",
         f"**Where a contact does not slide, the integrator's order remains**: the errors fall as "
         f"the first power of the timestep h, as those of semi-implicit Euler do. In the two cases: "
         f"{falls}.",
