@@ -20,10 +20,8 @@ class _Style(NamedTuple):
     marker: str
 
 
-_STYLES = [
-    _Style(colour, marker)
-    for colour, marker in zip((*COLOURS, "#882255", "#808000", GREY), "osD^vPX*<>", strict=True)
-]
+_COLOURS = (*COLOURS, "#882255", "#808000", "#44AA99", GREY)
+_STYLES = [_Style(colour, marker) for colour, marker in zip(_COLOURS, "osD^vPX*<h>", strict=True)]
 _CEILING = 100.0
 """Points with larger errors [rad] are not drawn."""
 _FLOOR = 1e-7
