@@ -78,7 +78,11 @@ def time_cell(row: Row) -> str:
     """Return the least and the largest run time of a row as text [ms]."""
     if not row.seconds:
         return ""
-    return f"{1e3 * min(row.seconds):.3g} to {1e3 * max(row.seconds):.3g} ms"
+    return f"{_milliseconds(min(row.seconds))} to {_milliseconds(max(row.seconds))} ms"
+
+
+def _milliseconds(time: float) -> str:
+    return f"{1e3 * time:.3g}" if time < 1 else f"{1e3 * time:,.0f}"
 
 
 def conservation(results: Results) -> Table:
