@@ -43,7 +43,7 @@ def draw(results: Results, path: pathlib.Path | Picture) -> None:
     Raises:
       OutputError: if a file cannot be written.
     """
-    title = "The can test: how well do physics engines roll?"
+    title = "Error over run time of a can in physics engines"
     styles = dict(zip(_engines(results), itertools.cycle(_STYLES), strict=False))
     with chart(path, len(CASES), 1, 12, 8.2 * len(CASES), title, _SUBTITLE) as panels:
         for axes, case in zip(panels, CASES.values(), strict=True):
@@ -54,7 +54,12 @@ def draw(results: Results, path: pathlib.Path | Picture) -> None:
                 if shown:
                     _draw_curve(axes, shown, styles[key.engine])
                     ends[key] = shown
-            axes.set(xscale="log", yscale="log", title=case.about, ylim=(_FLOOR, _CEILING))
+            axes.set(
+                xscale="log",
+                yscale="log",
+                title=f"{case.name}: {case.about}",
+                ylim=(_FLOOR, _CEILING),
+            )
             axes.set_xlabel("processor time of 2 s of motion [ms]")
             axes.set_ylabel("largest error of φ and u/a [rad]")
             axes.xaxis.set_major_formatter("{x:g}")
