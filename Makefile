@@ -14,7 +14,7 @@ PYTEST := OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --dist workstea
 export PYTHONDONTWRITEBYTECODE :=
 PIP := $(BIN)/python -m pip --disable-pip-version-check install --quiet --no-compile
 
-.PHONY: help report test quick everything search benchmark portability renders templates tables site dist lint clean
+.PHONY: help report test quick everything search benchmark portability renders templates tables engines site dist lint clean
 
 help:
 	@echo "make report       checks everything, draws the films, and writes one page: report/index.html (minutes)"
@@ -24,6 +24,7 @@ help:
 	@echo "make lint         runs ruff, the type checker, and import-linter, which is for those who change something"
 	@echo "make search       makes 2,000 random runs, of which none may be wrong without saying so"
 	@echo "make benchmark    measures run times anew, and writes study, picture and tables (ten minutes, undisturbed)"
+	@echo "make engines      rolls a can in other physics engines (half an hour, 1 GB); ONLY=pymunk is for one of them"
 	@echo "make renders      draws the animated pictures of the README anew"
 	@echo "make templates    writes the files of mjcf/ that a viewer opens, and the digests of its mechanics"
 	@echo "make tables       writes the tables of the documents anew"
@@ -58,6 +59,11 @@ benchmark: $(TOOLS)
 # The other tools go into build/, as docs/portability.md has it.
 portability: $(TOOLS)
 	$(BIN)/python -m tools.portability
+
+# If it was interrupted, it goes on. Nothing else should run meanwhile.
+engines: $(TOOLS)
+	$(BIN)/python -m tools.engines $(if $(ONLY),--only $(ONLY))
+	$(BIN)/python tools/documents.py
 
 renders: $(PACKAGE)
 	$(BIN)/python docs/figures/renders.py renders

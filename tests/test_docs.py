@@ -19,7 +19,9 @@ from tools import documents
 CHECKOUT = pathlib.Path(__file__).parents[1]
 README = CHECKOUT / "README.md"
 DOCUMENTS = sorted(
-    [*CHECKOUT.glob("*.md"), *CHECKOUT.glob("docs/*.md"), *CHECKOUT.glob("mjcf/*.md")]
+    path
+    for pattern in ("*.md", "docs/*.md", "mjcf/*.md", "engines/*.md")
+    for path in CHECKOUT.glob(pattern)
 )
 SHELLS = ("console", "bash", "sh", "shell")
 FENCE = re.compile(r"^```(?P<language>\w*)[^\n]*\n(?P<text>.*?)^```", re.DOTALL | re.MULTILINE)

@@ -25,6 +25,8 @@ from mjbeer.studies.benchmark import benchmark_tables
 from mjbeer.studies.benchmark.benchmark_tables import RK4
 from mjbeer.studies.benchmark.other_tools import COMPILED_DOP853, HEYOKA, ODEINT
 from mjbeer.studies.benchmark.points import SHIPPED, Benchmark
+from mjbeer.studies.engines import engine_plot, engine_tables, findings
+from mjbeer.studies.engines.results import Results
 from mjbeer.studies.stability import stability_maps, stability_study
 from mjbeer.studies.stability.judge import (
     BOTH,
@@ -57,6 +59,7 @@ DOCUMENTS = [CHECKOUT / "README.md", *sorted(CHECKOUT.glob("docs/*.md"))]
 COUNTS = json.loads((CHECKOUT / "docs" / "stability.json").read_text(encoding="utf-8"))
 BENCHMARK = Benchmark.load(SHIPPED)
 MAPS = stability_maps.load().maps
+ENGINES = Results.load()
 MARKED = re.compile(r"(<!-- made: (?P<name>[\w-]+) -->\n).*?(<!-- end -->)", re.DOTALL)
 LEFT_OUT = ("sliding-metal",)  # it takes as long as the massless can, within 5 %
 PEERS = {"mujoco": "MuJoCo", "scipy": "SciPy", "numba": "numba", "heyoka": "heyoka"}
@@ -79,9 +82,16 @@ def table(
     return Table("", columns, lines, left).markdown()
 
 
-def prose(text: str) -> str:
-    """Return sentences in lines of the documents' width."""
-    return textwrap.fill(text, 130)
+def plain(shown: Table) -> str:
+    """Return a table without its title as Markdown."""
+    return table(shown.columns, shown.rows, shown.left)
+
+
+def prose(text: str, indent: str = "") -> str:
+    """Return sentences in lines of the documents' width; addresses are not broken."""
+    return textwrap.fill(
+        text, 130, subsequent_indent=indent, break_on_hyphens=False, break_long_words=False
+    )
 
 
 def ratio(name: str, error: float) -> str:
@@ -511,14 +521,61 @@ def with_water(volume: float, friction: float = 1.0, drag: float = 0.0) -> Traje
         return real_beer.let_go(scene, real_beer.times_of(scene))
 
 
+def engines() -> str:
+    """The answer of the can test, in two sentences."""
+    return prose(findings.answer(ENGINES))
+
+
+def engine_errors() -> str:
+    """Errors of a can in physics engines."""
+    return plain(engine_tables.errors(ENGINES))
+
+
+def engine_conservation() -> str:
+    """What else should not change while a can rolls."""
+    return plain(engine_tables.conservation(ENGINES))
+
+
+def engine_tuning() -> str:
+    """What was tuned."""
+    return plain(engine_tables.tuning(ENGINES))
+
+
+def engine_findings() -> str:
+    """What the table of errors shows, with causes and sources."""
+    found = findings.findings(ENGINES)
+    return "\n".join(prose(f"- {sentence}", indent="  ") for sentence in found)
+
+
+def engine_versions() -> str:
+    """What was measured, and on which machine."""
+    return prose(engine_tables.measured(ENGINES))
+
+
 _OF_THE_PAPER = (holds, misprints)
 _OF_THE_BENCHMARK = (others, whole_calls, ranges, measured, long_run, contact)
 _OF_STABILITY = (steps, agreement, damped, damped_runs, kinds, honesty)
 _OF_REAL_BEER = (swings, speeds, metre)
-_ALL = (*_OF_THE_PAPER, gauss_jackson, *_OF_THE_BENCHMARK, *_OF_STABILITY, *_OF_REAL_BEER)
+_OF_ENGINES = (
+    engines,
+    engine_errors,
+    engine_conservation,
+    engine_tuning,
+    engine_findings,
+    engine_versions,
+)
+_ALL = (
+    *_OF_THE_PAPER,
+    gauss_jackson,
+    *_OF_THE_BENCHMARK,
+    *_OF_STABILITY,
+    *_OF_REAL_BEER,
+    *_OF_ENGINES,
+)
 MADE = {made.__name__.replace("_", "-"): made for made in _ALL}
 """What makes the text between two marks, by their name."""
 
 if __name__ == "__main__":
+    engine_plot.draw(ENGINES, CHECKOUT / "renders" / "engines")
     for document in DOCUMENTS:
         document.write_text(anew(document.read_text(encoding="utf-8")), encoding="utf-8")

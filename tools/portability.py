@@ -8,20 +8,17 @@ import json
 import math
 import os
 import pathlib
-import shutil
 import subprocess
 import sys
 import tempfile
 from dataclasses import dataclass
 
-from filelock import FileLock
-
 from mjbeer import Scene, exact
 from mjbeer.model.export import export
 from mjbeer.model.setting import ROLLINGS, Rolling, supported
 from tests.support.scenes import SCENES
+from tools.environments import CHECKOUT, AbsentError, python_with
 
-CHECKOUT = pathlib.Path(__file__).parents[1]
 ENVIRONMENTS = CHECKOUT / "build" / "others"
 START = 1.0, 0.5
 """phi [rad] and its rate [rad/s] at the start: more than half a swing follows in a second."""
@@ -32,8 +29,6 @@ _TIMESTEP = 1e-3
 _HOOP_TIMESTEP = 2.5e-4
 """The timestep [s] of the hoop's template, as the hoop passes its bottom at 47 rad/s."""
 _CONSUMERS = pathlib.Path(__file__).parent / "consumers.py"
-_QUIETLY = ("--quiet", "--disable-pip-version-check")
-_PIP_INSTALL = ("-m", "pip", "install", *_QUIETLY, "--only-binary=:all:")
 
 
 @dataclass(frozen=True)
@@ -57,24 +52,7 @@ class Other:
         if not self.requirements:
             return sys.executable
         folder = ENVIRONMENTS / self.name.replace(" ", "-")
-        program = folder / "bin" / "python"
-        stamp = folder / "installed.txt"
-        ENVIRONMENTS.mkdir(parents=True, exist_ok=True)
-        with FileLock(f"{folder}.lock"):  # several processes may run the tests
-            if not stamp.exists() or stamp.read_text() != "\n".join(self.requirements):
-                subprocess.run([sys.executable, "-m", "venv", "--clear", folder], check=True)
-                words = [program, *_PIP_INSTALL, *self.requirements]
-                ran = subprocess.run(words, capture_output=True, text=True, check=False)
-                if ran.returncode:
-                    shutil.rmtree(folder)
-                    reason = ran.stderr.strip().splitlines()[-1]
-                    raise AbsentError(f"pip cannot install {self.name}: {reason}")
-                stamp.write_text("\n".join(self.requirements))
-        return str(program)
-
-
-class AbsentError(Exception):
-    """A tool cannot be had here."""
+        return python_with(folder, self.name, self.requirements)
 
 
 OLDEST = "3.3.4"

@@ -32,6 +32,8 @@ from mjbeer.paper.claim import Claim
 from mjbeer.report import films
 from mjbeer.studies.benchmark import benchmark_tables, work_precision
 from mjbeer.studies.benchmark.points import SHIPPED, Benchmark
+from mjbeer.studies.engines import engine_plot, engine_tables, findings
+from mjbeer.studies.engines.results import Results
 from mjbeer.studies.stability import stability_maps
 from mjbeer.studies.study import machine
 from mjbeer.studies.validation.validate import Validation, validate
@@ -40,6 +42,8 @@ _HERE = pathlib.Path(__file__).parent
 _LIVE_OF_WHEEL = _HERE / "web" / "live.html"
 _LIVE_OF_CHECKOUT = _HERE.parents[2] / "docs" / "live.html"
 """The race to play, as it is installed from a wheel and in a checkout."""
+_ENGINES = "engines"
+"""The picture of the can test."""
 _MAP = "stability-solref"
 """The map on the page; the others lie beside it."""
 _MATHML = {
@@ -84,6 +88,15 @@ class _Errors(NamedTuple):
     tables: list[Table]
     ratio_range: Callable[[str, float], str]
     """Tells how many times as long a setting takes as the best, at an error [rad]."""
+
+
+class _Engines(NamedTuple):
+    """The section about other physics engines."""
+
+    answer: str
+    """What the test found, in a sentence or two."""
+    picture: Picture
+    tables: list[Table]
 
 
 class _Stability(NamedTuple):
@@ -143,6 +156,8 @@ def plot_jobs(folder: pathlib.Path) -> list[PlotJob]:
         of_case = replace(benchmark, points=benchmark.of(case))
         draw = partial(work_precision.draw, of_case)
         plots.append(PlotJob(draw, folder / f"error-{case}", in_memory=True))
+    draw_engines = partial(engine_plot.draw, Results.load())
+    plots.append(PlotJob(draw_engines, folder / _ENGINES, in_memory=True))
     for story in stories.STORIES:
         plots.append(PlotJob(story.plot, folder / story.name, in_memory=True))
     for name, draw in stability_maps.figures(stability_maps.load()).items():
@@ -171,6 +186,7 @@ def page(
         shown_films=shown_films,
         not_drawn=not_drawn,
         errors=_errors(plots),
+        engines=_engines(plots),
         stability=_stability(plots),
         stories=stories,
         plots=plots,
@@ -199,6 +215,15 @@ def _errors(plots: Mapping[str, Picture]) -> _Errors:
         plots=[plots[f"error-{case}"] for case in benchmark.cases],
         tables=benchmark_tables.tables(benchmark),
         ratio_range=partial(benchmark_tables.ratio_range, benchmark),
+    )
+
+
+def _engines(plots: Mapping[str, Picture]) -> _Engines:
+    results = Results.load()
+    return _Engines(
+        findings.answer(results),
+        picture=plots[_ENGINES],
+        tables=[engine_tables.errors(results), engine_tables.conservation(results)],
     )
 
 

@@ -1,0 +1,133 @@
+"""The tables of the can test, for the documents and for the page of the report."""
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from mjbeer.output.terminal import Table
+from mjbeer.studies.engines.results import CASES, CurveKey, Engine, Order, Results, Row, order_of
+
+COARSE = 1e-3
+"""The timestep [s] that tables compare, and of their run times."""
+FINE = 1e-4
+"""The shorter timestep [s] of the tables."""
+SENSITIVE_MARK = "*"
+"""Stands behind the error of a row that a start aside changes."""
+
+
+class Way(NamedTuple):
+    """An engine with a shape and a setting."""
+
+    engine: str
+    shape: str
+    setting: str
+
+    def key(self, case: str) -> CurveKey:
+        """Return the key of its curve in a case."""
+        return CurveKey(case, *self)
+
+
+def ways(results: Results) -> list[Way]:
+    """Return all engines with their shapes and settings, in the order of the results."""
+    found = [Way(*row.key[1:]) for row in results.rows]
+    return list(dict.fromkeys(found))
+
+
+def row_at(rows: Sequence[Row], timestep: float) -> Row:
+    """Return the row of a curve with a timestep [s]."""
+    (found,) = [row for row in rows if row.timestep == timestep]
+    return found
+
+
+def errors(results: Results) -> Table:
+    """Return the errors of both cases, how they fall with the timestep, and run times."""
+    columns = ["engine", "shape", "setting"]
+    for case in CASES:
+        columns += [f"{case}, 1 ms", "0.1 ms", "falls as"]
+    columns.append("run time")
+    curves = {case: results.curves(case) for case in CASES}
+    lines = []
+    for way in ways(results):
+        cells = list(way)
+        for case, of_case in curves.items():
+            rows = of_case[way.key(case)]
+            cells += [error_cell(row_at(rows, COARSE)), error_cell(row_at(rows, FINE))]
+            cells.append(order_cell(order_of(rows)))
+        cells.append(time_cell(row_at(curves["roll"][way.key("roll")], COARSE)))
+        lines.append(tuple(cells))
+    return Table("Largest error of φ and u/a in 2 s [rad]", tuple(columns), lines, left=(0, 1, 2))
+
+
+def error_cell(row: Row) -> str:
+    """Return the error of a row [rad] as text, marked if a start aside changes it."""
+    if row.failure:
+        return "none"
+    return f"{row.error:.1e}{SENSITIVE_MARK if row.is_sensitive else ''}"
+
+
+def order_cell(order: Order | None) -> str:
+    """Return how an error falls with the timestep h: a power of it, or the floor [rad]."""
+    if order is None:
+        return ""
+    if order.converges:
+        return f"h^{order.order:.1f}"
+    return f"floor {order.floor:.1e}"
+
+
+def time_cell(row: Row) -> str:
+    """Return the least and the largest run time of a row as text [ms]."""
+    if not row.seconds:
+        return ""
+    return f"{_milliseconds(min(row.seconds))} to {_milliseconds(max(row.seconds))} ms"
+
+
+def _milliseconds(time: float) -> str:
+    return f"{1e3 * time:.3g}" if time < 1 else f"{1e3 * time:,.0f}"
+
+
+def conservation(results: Results) -> Table:
+    """Return what else should not change: energy, slip and the lane, at a timestep of 1 ms."""
+    columns = ["engine", "shape", "setting"]
+    for case in CASES:
+        columns += [f"{case}: energy", "slip [mm]", "drift [mm]"]
+    curves = {case: results.curves(case) for case in CASES}
+    lines = []
+    for way in ways(results):
+        cells = list(way)
+        for case, of_case in curves.items():
+            row = row_at(of_case[way.key(case)], COARSE)
+            values = (row.energy_error, 1e3 * row.slip, 1e3 * row.lateral)
+            cells += [f"{value:.1e}" if math.isfinite(value) else "none" for value in values]
+        lines.append(tuple(cells))
+    return Table("Energy, slip and drift at 1 ms", tuple(columns), lines, left=(0, 1, 2))
+
+
+def tuning(results: Results) -> Table:
+    """Return what differs from the defaults in each setting that is tuned."""
+    lines = []
+    for engine in results.engines:
+        for setting in engine.settings:
+            if setting["tuned"]:
+                lines.append((engine.name, setting["shape"], setting["name"], setting["about"]))
+    columns = ("engine", "shape", "setting", "what differs from the defaults")
+    return Table("What was tuned", columns, lines, left=(0, 1, 2, 3))
+
+
+def versions(engine: Engine) -> str:
+    """Return an engine with the versions of its packages as text."""
+    packages = ", ".join(f"{name} {version}" for name, version in engine.versions.items())
+    return f"{engine.name} ({packages})"
+
+
+def measured(results: Results) -> str:
+    """Return versions and machine as sentences."""
+    machines = {tuple(engine.machine.values()): engine.machine for engine in results.engines}
+    places = " and ".join(
+        f"{machine['cores']} cores of an {machine['processor']}" for machine in machines.values()
+    )
+    names = ", ".join(versions(engine) for engine in results.engines)
+    text = f"Measured on {places}, of which a run uses one, with Python "
+    text += f"{' and '.join(sorted({engine.python for engine in results.engines}))}: {names}."
+    for file, reason in results.absent.items():
+        text += f" Left out: {file}, as {reason}."
+    return text
