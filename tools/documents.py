@@ -20,7 +20,7 @@ import numpy as np
 from mjbeer import LiquidWarning, liquid, paper
 from mjbeer.output.terminal import Table
 from mjbeer.paper.claim import APPROXIMATION, CONSEQUENCE, MISPRINT
-from mjbeer.studies import predictions
+from mjbeer.studies import contact_creep, polygon, predictions, stored_tables
 from mjbeer.studies.benchmark import benchmark_tables
 from mjbeer.studies.benchmark.benchmark_tables import RK4
 from mjbeer.studies.benchmark.other_tools import COMPILED_DOP853, HEYOKA, ODEINT
@@ -531,6 +531,26 @@ def engine_errors() -> str:
     return plain(engine_tables.errors(ENGINES))
 
 
+def contact_errors() -> str:
+    """Errors and costs from MuJoCo's default contact to a stiff one."""
+    return stored_tables.load(contact_creep.STORED, "errors").markdown()
+
+
+def contact_law() -> str:
+    """Errors of MuJoCo's soft contacts, predicted and measured."""
+    return stored_tables.load(contact_creep.STORED, "law").markdown()
+
+
+def prisms() -> str:
+    """Where prisms end by theory and in MuJoCo."""
+    return stored_tables.load(polygon.STORED, "mujoco").markdown()
+
+
+def physx_prisms() -> str:
+    """Where PhysX's hulls end by theory and in PhysX."""
+    return stored_tables.load(polygon.STORED, "physx").markdown()
+
+
 def engine_conservation() -> str:
     """What else should not change while a can rolls."""
     return plain(engine_tables.conservation(ENGINES))
@@ -563,6 +583,10 @@ _OF_ENGINES = (
     engine_tuning,
     engine_findings,
     engine_versions,
+    contact_errors,
+    contact_law,
+    prisms,
+    physx_prisms,
 )
 _ALL = (
     *_OF_THE_PAPER,

@@ -1,8 +1,8 @@
 """How wheels with facets roll in MuJoCo and in PhysX, beside the theory of rigid prisms.
 
 `python -m mjbeer.studies.polygon` rolls MuJoCo's own convex meshes down the incline of the can test
-and prints two tables, in a minute. What PhysX did is in `physx_prisms.json`: how its hulls came out
-and where they ended, as SAPIEN told. `mjbeer.theory.prism` rolls the same hulls.
+and writes two tables into `STORED`, in a few seconds. What PhysX did is in `physx_prisms.json`: how
+its hulls came out and where they ended, as SAPIEN told. `mjbeer.theory.prism` rolls the same hulls.
 """
 
 import json
@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from mjbeer.output.terminal import Table
-from mjbeer.studies import can_test
+from mjbeer.studies import can_test, stored_tables
 from mjbeer.studies.can_test import DURATION, ROLL
 from mjbeer.theory import prism
 from mjbeer.theory.trajectory import exact
@@ -21,6 +21,8 @@ TIME_CONSTANTS = (2e-4, 1e-3, 5e-3)
 """Time constants of stiff contacts of MuJoCo [s], from twice the timestep on."""
 TIMESTEP = 1e-4
 """[s]"""
+STORED = pathlib.Path(__file__).with_name("polygon.json")
+"""The tables "mujoco" and "physx"."""
 PHYSX = pathlib.Path(__file__).with_name("physx_prisms.json")
 
 
@@ -111,5 +113,4 @@ def _end_of(edges: Sequence[float]) -> str:
 
 
 if __name__ == "__main__":
-    print(mujoco_table().markdown())
-    print(physx_table().markdown())
+    stored_tables.save(STORED, {"mujoco": mujoco_table(), "physx": physx_table()})
