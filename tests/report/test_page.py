@@ -238,3 +238,21 @@ def test_formulas_are_mathml_without_what_was_not_understood(row) -> None:
         assert "\\" not in re.sub("<[^>]*>", "", shown)
         assert (r"\textcolor" in latex) == ('class="differs"' in shown)
     assert page.letters("phi_0^2 and u_ddot") == "φ₀² and u\N{COMBINING DIAERESIS}"
+
+
+@pytest.mark.parametrize(
+    ("value", "written"),
+    [
+        (0.0, "0 %"),
+        (0.0123, "1.2 %"),
+        (0.0996, "10 %"),
+        (0.996, "100 %"),
+        (1.134, "113 %"),
+        (10.5, "1050 %"),
+        (3.1e-7, "3.1&thinsp;·&thinsp;10<sup>\N{MINUS SIGN}7</sup>"),
+    ],
+)
+def test_a_share_is_a_percentage_in_plain_digits_or_a_power_of_ten(
+    value: float, written: str
+) -> None:
+    assert page.share(value) == written

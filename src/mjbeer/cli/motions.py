@@ -149,7 +149,7 @@ def _steady_rolling(scene: Scene) -> list[KeyFigure]:
     if not scene.dissipates:
         return []
     figures = [
-        KeyFigure("damping torque over slip rate", damping_in_words(scene)),
+        KeyFigure("damping torque per slip rate", damping_in_words(scene)),
         KeyFigure("drag of the air", scene.drag, "kg/m", "{:.4g}"),
     ]
     try:

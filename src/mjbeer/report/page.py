@@ -236,10 +236,10 @@ def _stability(plots: Mapping[str, Picture]) -> _Stability:
 def share(value: float) -> Markup:
     """Return a share of the largest term as HTML: a percentage, or a power of ten.
 
-    A percentage has two digits, or three from 100 on.
+    A percentage has two digits, or all of its whole number from 100 on.
     """
-    if abs(value) >= 1:
-        return escape(f"{100 * value:.3g} %")
+    if abs(value) >= 0.1:
+        return escape(f"{100 * value:.0f} %")
     if abs(value) >= 1e-3 or value == 0:
         return escape(f"{100 * value:.2g} %")
     digits, power = f"{value:.1e}".split("e")
