@@ -18,7 +18,12 @@ from mkdocs.structure.files import File, Files, InclusionLevel
 
 CHECKOUT = pathlib.Path(__file__).parents[1]
 REPORT = CHECKOUT / "report"
-PAGES = [*CHECKOUT.glob("*.md"), *sorted(CHECKOUT.glob("docs/*.md")), CHECKOUT / "mjcf/README.md"]
+PAGES = [
+    *CHECKOUT.glob("*.md"),
+    *sorted(CHECKOUT.glob("docs/*.md")),
+    CHECKOUT / "mjcf/README.md",
+    CHECKOUT / "engines/README.md",
+]
 LINK = re.compile(r"\]\((?!\w+:|#)(?P<path>[^)#\s]+)")
 """A link to a file."""
 PROGRAM = re.compile(r"(\]\((?!\w+:)[^)#\s]+\.py)(?=[)#])")

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mjbeer import Can, Scene, frozen, sliding
+from mjbeer import Can, Scene, frozen, liquid, sliding
 from mjbeer.drawing.camera import scale
 from mjbeer.drawing.scene import Display
 from mjbeer.exceptions import ParameterError
@@ -80,6 +80,16 @@ def test_any_scene_anywhere(
         phi = roll
     position = Position(turns * a, phi, roll, height * a)
     display = Display([scene])
+
+    display.pose(np.array([position]))
+
+    check(display, 0, position)
+
+
+def test_a_liquid_that_sloshes_is_posed_as_any_load_is() -> None:
+    scene = liquid("water", incline=0.1, can=METAL)
+    display = Display([scene])
+    position = Position(u=0.1, phi=0.5, roll=3.0, lift=0.0)
 
     display.pose(np.array([position]))
 

@@ -163,7 +163,9 @@ def _resize(scene: Scene) -> Scene:
         inertia=RADIUS**2,
     )
     offset = min(scene.load.offset * scale(scene), RADIUS)
-    load = dataclasses.replace(scene.load, mass=1.0, offset=offset, inertia=RADIUS**2)
+    load = dataclasses.replace(
+        scene.load, mass=1.0, offset=offset, inertia=RADIUS**2, sloshes_in=None
+    )
     return dataclasses.replace(scene, can=can, load=load, gravity=9.81, damping=0.0, drag=0.0)
 
 
