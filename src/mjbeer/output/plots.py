@@ -117,10 +117,10 @@ class _Heading(NamedTuple):
 def _headings(title: str, subtitle: str, width: float) -> list[_Heading]:
     """Return the lines of title and subtitle above a plot of this width [inches]."""
     letters = round(_LETTERS * width)
-    smaller_letters = round(1.7 * _LETTERS * width)
-    headings = [_Heading(line, 0.32, _TITLE) for line in textwrap.wrap(title, letters)]
+    smaller_letters = round(1.5 * _LETTERS * width)
+    headings = [_Heading(line, 0.28, _TITLE) for line in textwrap.wrap(title, letters)]
     for line in textwrap.wrap(subtitle, smaller_letters):
-        headings.append(_Heading(line, 0.24, _SUBTITLE))
+        headings.append(_Heading(line, 0.22, _SUBTITLE))
     return headings
 
 

@@ -81,7 +81,7 @@ STORIES = (
         "Beer that starts with its surface parallel to the incline keeps it so, and the can rolls "
         "down with exactly g sin α. Beer that is let go at 60° swings, and its can hesitates. The "
         "centre of mass of the beer moves down in the same way in both.",
-        PlotSize(2, 1, 6, 6.2),
+        PlotSize(2, 1, 6, 5.6),
         story_plots.draw_trivial,
         Race(
             "One beer swings, one does not: their centres of mass stay abreast",
@@ -101,7 +101,7 @@ STORIES = (
         "sin φ, and swings with the beer. Eq. (25) as printed has b cos φ instead, which is a "
         "smaller ripple at twice the frequency. It is drawn without its constant, and from the "
         "same start.",
-        PlotSize(1, 1, 6, 4.4),
+        PlotSize(1, 1, 6, 4.0),
         story_plots.draw_hesitation,
         MotionFilm(
             story_plots.HESITATION,
@@ -116,7 +116,7 @@ STORIES = (
     ),
     Story(
         "looping",
-        "Beer that loops in its can does not turn evenly",
+        "Beer loops unevenly in its can, slow or fast",
         in_words(sliding()),
         "The beer loops in its can. The plots show how far it is ahead of an even rotation, over "
         "one turn. By eqs. (26) and (28) it is ahead in one half of the turn and behind in the "
@@ -124,7 +124,7 @@ STORIES = (
         "beer spins. Fast beer lifts its can off the incline: a free can stays on it up to 47 "
         "rad/s at the bottom. The corrected formula is of first order, and only near the truth "
         "when the beer is slow.",
-        PlotSize(2, 1, 6, 6.2),
+        PlotSize(2, 1, 6, 5.6),
         story_plots.draw_looping,
         MotionFilm(
             story_plots.LOOPING,
@@ -139,12 +139,12 @@ STORIES = (
     ),
     Story(
         "rocking",
-        "A can of frozen beer rocks about its equilibrium and stays",
+        "Frozen beer rocks about its equilibrium and stays",
         f"{in_words(frozen())}; let go at φ = 0",
         "A can with frozen beer is let go at φ = 0. It rocks about its equilibrium and does not "
         "roll off. Footnote 8's equation as printed has ½ a b in place of a b, and gives another "
         "swing.",
-        PlotSize(2, 1, 6, 6.2),
+        PlotSize(2, 1, 6, 5.6),
         story_plots.draw_rocking,
         MotionFilm(
             story_plots.ROCKING,
@@ -162,18 +162,18 @@ STORIES = (
         "b = a/3; here b = 0.42 a). It rolls down in jerks, a little faster than a solid cylinder. "
         "From 0.834 s on the incline would have to pull the can for it to keep rolling. What comes "
         "after that is dotted.",
-        PlotSize(2, 1, 6, 6.2),
+        PlotSize(2, 1, 6, 5.6),
         story_plots.draw_roll_down,
     ),
     Story(
         "slip-and-hop",
-        "On an incline with μ = 1, the can slips before it hops",
+        "With μ = 1 the can slips before it hops",
         f"{in_words(frozen())}; let go at φ = 180°",
         "A half-full can is let go with its frozen beer on top, on an incline with μ = 1. Rolling "
         "needs more and more friction. At 0.72 s it needs more than there is, and the can slips by "
         "less than a millimetre. At 0.83 s the can begins to slip far, and then it hops, 7 mm "
         "high.",
-        PlotSize(2, 1, 6, 6.2),
+        PlotSize(2, 1, 6, 5.6),
         story_plots.draw_slip_and_hop,
         MotionFilm(
             story_plots.PARTING,
@@ -196,7 +196,7 @@ STORIES = (
         "its mass. Littlewood's 90° are right for a massless hoop. With any finite friction the "
         "hoop skids first. A hoop just too heavy to skid at 80° grips until after 90°: this is why "
         "one line has a gap.",
-        PlotSize(1, 1, 6, 5),
+        PlotSize(1, 1, 6, 4.4),
         story_plots.draw_lift_off,
     ),
 )

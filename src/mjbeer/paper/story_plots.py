@@ -16,7 +16,6 @@ from mjbeer.output.plots import (
     SIMULATED,
     THEORY,
     UNPHYSICAL,
-    name_below,
     note,
 )
 from mjbeer.paper import hopping, oscillation
@@ -58,31 +57,43 @@ def let_go(degrees: float, duration: float = 1.0) -> Trajectory:
     return simulate(sliding(), duration, math.radians(degrees), integrator="DOP853", timestep=1e-3)
 
 
+def share_time(panels: Sequence[Axes]) -> None:
+    """Let panels, one below the other, have the time axis of the last one."""
+    for axes in panels[:-1]:
+        axes.tick_params(labelbottom=False)
+    panels[-1].set_xlabel(_TIME)
+
+
 def draw_trivial(panels: Sequence[Axes]) -> None:
     """Draw φ, and how far u and s are ahead of an even acceleration, for two starts."""
     angle, ahead = panels
-    for degrees, colour, width in ((0, COLOURS[4], 4.0), (60, COLOURS[0], 1.5)):
+    swinging = COLOURS[0]
+    still = COLOURS[4]
+    leads = []
+    for degrees, colour, width in ((0, still, 4.0), (60, swinging, 1.5)):
         run = let_go(degrees)
         even = run.scene.acceleration() * run.time**2 / 2
         centre = run.u - run.scene.load.offset * np.sin(run.phi)
-        angle.plot(
-            run.time,
-            np.degrees(run.phi),
-            color=colour,
-            linewidth=width,
-            label=f"can let go at φ = {degrees}°",
-        )
+        leads.append(np.abs(run.u - even).max())
+        angle.plot(run.time, np.degrees(run.phi), color=colour, linewidth=width)
         ahead.plot(run.time, 1e3 * (run.u - even), color=colour, linewidth=width)
-        ahead.plot(
-            run.time, 1e3 * (centre - even), "k--", label="the beer's centre of mass, in both cans"
-        )
+        ahead.plot(run.time, 1e3 * (centre - even), "k--")
+    for axes in panels:
+        axes.set_xlim(-0.02, 1.38)
+        axes.set_xticks(np.linspace(0, 1, 6))
+    end = run.time[-1]
+    dark = "#9A6A00"
+    note(angle, "let go at 60°", (end, math.degrees(run.phi[-1])), (7, 0), color=swinging)
+    note(angle, "let go at 0°", (end, 0), (7, 0), color=dark)
+    note(ahead, "let go at 60°", (end, 1e3 * (run.u - even)[-1]), (7, 0), color=swinging)
+    note(ahead, "let go at 0°", (end, 0), (7, -7), color=dark)
+    note(ahead, "centre of mass\nof the beer, in both", (end, 0), (7, 13), color="black")
     angle.set(ylabel="φ [°]", title=_TILT)
     ahead.set(
-        xlabel=_TIME,
         ylabel="u − ½ g sin α t² [mm]",
-        title="How far it is ahead of an even acceleration",
+        title=f"Lead over an even acceleration: ±{1e3 * max(leads):.0f} mm for the can that swings",
     )
-    name_below((angle, ahead), 2)
+    share_time(panels)
 
 
 def draw_hesitation(panels: Sequence[Axes]) -> None:
@@ -95,48 +106,68 @@ def draw_hesitation(panels: Sequence[Axes]) -> None:
     # there cos(2 omega t) has the opposite sign.
     amplitude = scene.load.offset * SWING**2 / 2
     printed = -amplitude / 2 - amplitude * np.cos(2 * scene.frequency() * times)
+    truth = exact(scene, times, SWING)
+    period = scene.period(SWING)
+    largest = scene.load.offset * math.sin(SWING)
     (axes,) = panels
-    axes.plot(
-        times, 1e3 * (exact(scene, times, SWING).u - even), label="exact theory: b sin φ", **THEORY
-    )
-    axes.plot(times, 1e3 * (run.u - even), label="MuJoCo", **SIMULATED)
-    axes.plot(
-        times,
-        1e3 * printed,
-        label="eq. (25) as printed, but for a constant: twice in a swing",
-        **_PRINTED,
-    )
+    axes.plot(times, 1e3 * (truth.u - even), **THEORY)
+    axes.plot(times, 1e3 * (run.u - even), **SIMULATED)
+    axes.plot(times, 1e3 * printed, **_PRINTED)
     axes.axhline(0, **REFERENCE)
+    blue = COLOURS[0]
+    # The beer passes phi = 0 a quarter of a swing after it was let go, and once in every swing.
+    for passing in (period / 4, 5 * period / 4):
+        axes.plot([passing, passing], [-18, 0], linestyle=":", color=blue)
+        note(axes, "hesitates", (passing, -16.5), (5, 0), color=blue)
+    note(
+        axes,
+        "MuJoCo, on exact theory (grey): b sin φ",
+        (period, 1e3 * largest),
+        (0, 12),
+        color=blue,
+        ha="center",
+    )
+    note(
+        axes,
+        "eq. (25) as printed:\ntwice in a swing",
+        (3 * period / 2, 4),
+        (0, 16),
+        color=COLOURS[1],
+        ha="center",
+    )
     axes.set(
         xlabel=_TIME,
         ylabel="u − ½ g sin α t² [mm]",
-        title="Lead of the can over one that accelerates evenly",
+        title=f"Lead over an even acceleration: ±{1e3 * largest:.0f} mm, once in {period:.2f} s",
+        ylim=(-19, 17.5),
     )
-    name_below([axes], 1)
 
 
 def draw_looping(panels: Sequence[Axes]) -> None:
     """Draw how unevenly beer loops, slowly and fast, beside eqs. (26) and (28)."""
     phase = np.linspace(0, 2 * math.pi, 201)
     x = np.degrees(phase)
-    for axes, start, about in zip(
-        panels, (SLOW, 400.0), ("Slowly", "Fast, in a can held down"), strict=True
-    ):
+    for axes, start, about in zip(panels, (SLOW, 400.0), ("Slow", "Fast, held down"), strict=True):
         turn = loop(sliding(), start)
         phi = sum(turn.ripple[k] * np.sin(k * phase) for k in range(1, 40))
         once = value(oscillation.CORRECTED_28, turn) * np.sin(phase)
         corrected = np.degrees(once + turn.delta / 4 * np.sin(2 * phase))
         printed = np.degrees(value(oscillation.PRINTED_28, turn) * np.sin(phase))
-        axes.plot(x, printed, label="one ripple in a turn: (26) and (28) as printed", **_PRINTED)
-        axes.plot(x[::5], corrected[::5], "k.", label="and a second, twice in a turn: corrected")
+        axes.plot(x, printed, label="as printed, (26) and (28): one ripple in a turn", **_PRINTED)
+        axes.plot(x[::5], corrected[::5], "k.", label="corrected: a second, twice in a turn")
         axes.plot(x, np.degrees(phi), label="MuJoCo", **SIMULATED)
+        most = math.degrees(np.abs(phi).max())
         axes.set(
-            ylabel="beer ahead, φ − Ωt [°]",
-            title=f"{about}: Ω = {turn.Omega:.0f} rad/s in the mean",
+            ylabel="φ − Ωt [°]",
+            title=f"{about} ({turn.Omega:.0f} rad/s): up to {most:.2g}° ahead, as printed "
+            f" {np.abs(printed).max():.2g}°",
         )
         axes.set_xticks(range(0, 361, 90))
-    panels[-1].set_xlabel("even turning, Ωt [°]")
-    name_below(panels, 1)
+    slow, fast = panels
+    slow.set_ylim(top=31)
+    slow.legend(loc="upper right", fontsize=9.5, borderaxespad=0.0)
+    slow.tick_params(labelbottom=False)
+    fast.set_xlabel("how far it would have turned evenly, Ωt [°]")
 
 
 def footnote_8_as_printed(scene: Scene, times: np.ndarray, phi0: float) -> np.ndarray:
@@ -165,17 +196,27 @@ def draw_rocking(panels: Sequence[Axes]) -> None:
     angle, error = panels
     truth = exact(scene, times, run.phi0).phi
     printed = footnote_8_as_printed(scene, times, run.phi0)
-    angle.plot(times, np.degrees(truth), label="exact theory, eq. (52)", **THEORY)
-    angle.plot(times, np.degrees(run.phi), label="MuJoCo", **SIMULATED)
-    angle.plot(times, np.degrees(printed), label="footnote 8 as printed", **_PRINTED)
-    angle.axhline(math.degrees(scene.equilibrium()), label="equilibrium, eq. (53)", **REFERENCE)
+    angle.plot(times, np.degrees(truth), **THEORY)
+    angle.plot(times, np.degrees(run.phi), **SIMULATED)
+    angle.plot(times, np.degrees(printed), **_PRINTED)
+    rest = math.degrees(scene.equilibrium())
+    angle.axhline(rest, **REFERENCE)
     error.plot(times, np.degrees(run.phi - truth), **SIMULATED)
     error.plot(times, np.degrees(printed - truth), **_PRINTED)
-    angle.set(ylabel="φ [°]", title=_TILT)
+    end = times[-1]
+    note(angle, f"equilibrium,\neq. (53): {rest:.1f}°", (end, rest), (6, 15))
+    furthest = math.degrees(np.abs(printed - truth).max())
+    note(error, "MuJoCo", (end, 0), (6, 0), color=COLOURS[0])
+    note(error, "footnote 8\nas printed", (end, -0.7), (6, 0), color=COLOURS[1])
+    angle.set(ylabel="φ [°]", title="Angle of the beer's surface; grey: exact theory, eq. (52)")
+    for axes in panels:
+        axes.set_xlim(-0.04, 2.72)
+        axes.set_xticks(np.linspace(0, 2, 5))
     error.set(
-        xlabel=_TIME, ylabel="φ less that of theory [°]", title="How far each is from exact theory"
+        ylabel="φ less that of theory [°]",
+        title=f"Footnote 8 as printed is up to {furthest:.1f}° from exact theory",
     )
-    name_below([angle], 2)
+    share_time(panels)
 
 
 def draw_roll_down(panels: Sequence[Axes]) -> None:
@@ -187,32 +228,40 @@ def draw_roll_down(panels: Sequence[Axes]) -> None:
     rolls = times <= leaves_at
     pulled = times >= leaves_at
     angle, normal = panels
-    even = scene.acceleration() / scene.can.radius * times**2 / 2
-    angle.plot(
-        times,
-        np.degrees(even),
-        "--",
-        label="solid cylinder: g sin α t² / 3a",
-        color=GREY,
-        linewidth=1.2,
-    )
-    printed = footnote_8_as_printed(scene, times, math.pi) - math.pi
-    angle.plot(times[rolls], np.degrees(printed[rolls]), label="footnote 8 as printed", **_PRINTED)
+    even = np.degrees(scene.acceleration() / scene.can.radius * times**2 / 2)
+    angle.plot(times, even, "--", color=GREY, linewidth=1.2)
+    printed = np.degrees(footnote_8_as_printed(scene, times, math.pi) - math.pi)
+    angle.plot(times[rolls], printed[rolls], **_PRINTED)
     weights = run.forces.normal / (scene.mass * scene.gravity)
-    for axes, values in ((angle, np.degrees(run.phi - math.pi)), (normal, weights)):
-        axes.plot(times[rolls], values[rolls], label="MuJoCo, can that rolls", **SIMULATED)
-        axes.plot(times[pulled], values[pulled], label="if the incline could pull it", **UNPHYSICAL)
+    turned = np.degrees(run.phi - math.pi)
+    for axes, values in ((angle, turned), (normal, weights)):
+        axes.plot(times[rolls], values[rolls], **SIMULATED)
+        axes.plot(times[pulled], values[pulled], **UNPHYSICAL)
         axes.axvline(leaves_at, **REFERENCE)
         axes.set_xlim(0, times[-1])
     normal.axhline(0, **REFERENCE)
-    note(normal, f"no push at {leaves_at:.3f} s", (leaves_at, 7), (-6, 0), ha="right")
-    angle.set(ylabel="φ − 180° [°]", title="How far the can has turned")
-    normal.set(
-        xlabel=_TIME,
-        ylabel="normal force / weight",
-        title="How hard the incline pushes; below 0 it would have to pull",
+    note(angle, "MuJoCo, a can that rolls", (0.1, 860), (0, 0), color=COLOURS[0])
+    note(angle, "footnote 8 as printed", (0.1, 700), (0, 0), color=COLOURS[1])
+    note(angle, "solid cylinder: g sin α t² / 3a", (leaves_at, 110), (-6, 0), ha="right")
+    note(
+        normal,
+        "dotted: if the incline could pull",
+        (leaves_at, 6.8),
+        (-6, 0),
+        ha="right",
+        color="#707070",
     )
-    name_below(panels, 2)
+    angle.set(
+        ylabel="φ − 180° [°]",
+        title=f"It has turned by {turned[rolls][-1]:.0f}°, a solid cylinder by "
+        f"{even[rolls][-1]:.0f}°, at {leaves_at:.3f} s",
+    )
+    normal.set(
+        ylabel="normal force / weight",
+        title=f"The incline pushes with up to {weights[rolls].max():.1f} weights, and with none "
+        f"at {leaves_at:.3f} s",
+    )
+    share_time(panels)
 
 
 def draw_slip_and_hop(panels: Sequence[Axes]) -> None:
@@ -223,25 +272,34 @@ def draw_slip_and_hop(panels: Sequence[Axes]) -> None:
     leaves_at = rolling.rolls_until()
     friction, moved = panels
     needed = rolling.forces.needed_friction
+    too_little = times[np.argmax(needed > FRICTION)]
+    slid = 1e3 * contact.slip
+    lifted = 1e3 * contact.lift
+    before = contact.time < leaves_at
     needed = np.where((needed < 2.5) & (times < leaves_at), needed, np.nan)
-    friction.plot(times, needed, label="needed to roll, exact theory", color="black")
+    friction.plot(times, needed, color="black")
     friction.axhline(FRICTION, **REFERENCE)
-    note(friction, f"all that there is: μ = {FRICTION:g}", (0, FRICTION), (6, 8))
-    moved.plot(
-        contact.time, 1e3 * contact.slip, color=COLOURS[1], label="slid instead of rolled, MuJoCo"
-    )
-    moved.plot(
-        contact.time, 1e3 * contact.lift, color=COLOURS[0], label="height above the incline, MuJoCo"
-    )
+    note(friction, f"all that there is: μ = {FRICTION:g}", (0.5, FRICTION), (6, 8))
+    note(friction, "needed to roll,\nexact theory", (0.5, 0.3), (6, 16), color="black")
+    moved.plot(contact.time, slid, color=COLOURS[1])
+    moved.plot(contact.time, lifted, color=COLOURS[0])
+    note(moved, "slid instead\nof rolled", (0.94, 15), (-2, 0), color=COLOURS[1], ha="right")
+    note(moved, "height", (0.89, 5.5), (-4, 0), color=COLOURS[0], ha="right")
     for axes in panels:
         axes.axvline(leaves_at, **REFERENCE)
-        axes.set_xlim(0, times[-1])
-    note(moved, "from here on rolling\nwould need a pull", (leaves_at, 5), (-6, 0), ha="right")
+        axes.set_xlim(0.5, times[-1])
+    note(moved, "from here on rolling\nwould need a pull", (leaves_at, 6), (-6, 0), ha="right")
     friction.set(
-        ylabel="friction / normal force", title="Friction that rolling needs", ylim=(0, 2.2)
+        ylabel="friction / normal force",
+        title=f"Rolling needs more friction than there is from {too_little:.2f} s",
+        ylim=(0, 2.2),
     )
-    moved.set(xlabel=_TIME, ylabel="distance [mm]", title="What the can does")
-    name_below(panels, 2)
+    moved.set(
+        ylabel="distance [mm]",
+        title=f"MuJoCo's can slides by {np.abs(slid[before]).max():.1f} mm, then hops "
+        f"{lifted.max():.1f} mm high",
+    )
+    share_time(panels)
 
 
 def skids(ratios: np.ndarray, mu: float) -> np.ndarray:
@@ -265,22 +323,32 @@ def draw_lift_off(panels: Sequence[Axes]) -> None:
     measured = [math.nan if angle is None else math.degrees(angle) for angle in simulated]
     lifts = [math.degrees(hopping.lift_off(float(ratio))) for ratio in ratios]
     (axes,) = panels
-    axes.plot(ratios, lifts, color=COLOURS[0], label="lifts off if it cannot skid, theory")
-    axes.plot(few, measured, "o", color=COLOURS[0], label="the same, MuJoCo")
-    for mu, colour in ((2.0, COLOURS[3]), (MU, COLOURS[1]), (0.5, COLOURS[4])):
-        axes.plot(
-            ratios, skids(ratios, mu), "--", color=colour, label=f"skids if μ = {mu:g}, theory"
-        )
+    axes.plot(ratios, lifts, color=COLOURS[0])
+    axes.plot(few, measured, "o", color=COLOURS[0])
+    note(
+        axes,
+        "lifts off if it cannot skid:\ntheory, and MuJoCo (dots)",
+        (few[2], measured[2]),
+        (-8, 22),
+        color=COLOURS[0],
+        ha="right",
+    )
+    for mu, colour, raised in ((2.0, COLOURS[2], 2), (MU, COLOURS[1], -2), (0.5, "black", 0)):
+        angles = skids(ratios, mu)
+        axes.plot(ratios, angles, "--", color=colour)
+        note(axes, f"skids, μ = {mu:g}", (ratios[-1], angles[-1]), (7, raised), color=colour)
+    lightest = math.degrees(hopping.slip(float(ratios[0]), MU))
     axes.axhline(90, **REFERENCE)
     axes.axvline(1 / 13, **REFERENCE)
-    note(axes, "Littlewood: 90°", (0.01, 90), (4, -9))
-    note(axes, "heavier hoops never lift off: M/m = 1/13", (1 / 13, 70), (-4, 0), ha="right")
+    note(axes, "Littlewood: 90°", (0.009, 90), (4, -9))
+    note(axes, "heavier hoops,\nM/m > 1/13,\nnever lift off", (1 / 13, 76), (7, 0))
     axes.set_xscale("log")
     axes.set(
         xlabel="mass of the hoop / weight on its rim, M / m",
         ylabel="angle of the weight from the top [°]",
+        title=f"With μ = {MU:g} a hoop of m/1000 skids at {lightest:.0f}°, not at 90°",
+        xlim=(9e-4, 0.24),
     )
     marks = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05)
     axes.set_xticks(marks, map(str, marks))
     axes.tick_params(which="minor", labelbottom=False)
-    name_below([axes], 2)

@@ -6,6 +6,7 @@ import json
 import math
 import os
 import pathlib
+import re
 from dataclasses import replace
 from functools import partial
 
@@ -14,11 +15,13 @@ import pytest
 from mjbeer.checks.check import Check
 from mjbeer.cli.app import main
 from mjbeer.model.setting import Integrator
+from mjbeer.output.plots import Picture
 from mjbeer.studies import predictions
 from mjbeer.studies.predictions import SoftRow
 from mjbeer.studies.stability import stability_maps, stability_study
 from mjbeer.studies.stability.stability_maps import PLANS, measure
 from mjbeer.studies.study import Study
+from mjbeer.theory.paper_scenes import frozen
 
 pytestmark = pytest.mark.slow
 
@@ -152,3 +155,35 @@ def test_stored_maps_are_what_is_measured_now(plan: tuple[str, Integrator]) -> N
         assert now.measured[place] == row[0] + row[-1]
         for before, after in zip(stored.boundaries[place], now.boundaries[place], strict=True):
             assert (before or math.inf) == pytest.approx(after or math.inf, rel=0.05)
+
+
+@pytest.mark.parametrize(
+    ("name", "limit"),
+    [
+        # h < 2 (sqrt(2) - 1) tau is where semi-implicit Euler's bound meets zeta = 1.
+        ("solref, Euler", f"stable below h = {2 * (math.sqrt(2) - 1):.2g} τ"),
+        ("direct, Euler", f"stable below h = {2 * (math.sqrt(2) - 1):.2g}/√K"),
+        # A swing of omega is stable up to h = 2/omega under semi-implicit Euler.
+        (
+            "gravity, Euler",
+            f"stable below h = {2 / frozen(0.0, gravity=1.0).frequency():.2g} √(1 m/g)",
+        ),
+        ("damping, implicit", "stable with every timestep"),
+    ],
+)
+def test_a_panel_says_which_timesteps_are_stable(name: str, limit: str) -> None:
+    (shown,) = (one_map for one_map in stability_maps.load().maps if one_map.name == name)
+
+    assert stability_maps._limit(shown) == limit
+
+
+def test_integrators_whose_runs_end_alike_share_a_panel() -> None:
+    maps = [one_map for one_map in stability_maps.load().maps if one_map.family == "gravity"]
+    picture = Picture("gravity")
+
+    stability_maps.draw(picture, maps)
+
+    titles = re.findall(r"<text[^>]*>([^<]*)</text>", picture.svg)
+    assert "RK4" in titles
+    assert "implicitfast, discrete" in titles
+    assert "implicit" not in titles

@@ -8,6 +8,7 @@ motion and theory's begin with the same small swing, and are judged by the same 
 import json
 import math
 import pathlib
+import textwrap
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
@@ -29,7 +30,7 @@ from mjbeer.integrators.mujoco_steps import MuJoCoSteps
 from mjbeer.model.build import build, specify
 from mjbeer.model.joints import joint_addresses
 from mjbeer.model.setting import MUJOCO_INTEGRATORS, Integrator
-from mjbeer.output.plots import COLOURS, chart, name_below
+from mjbeer.output.plots import COLOURS, Picture, chart, name_below
 from mjbeer.output.terminal import Table
 from mjbeer.studies import predictions
 from mjbeer.studies.predictions import ACCURACY, GROWTH, SoftRow, spring
@@ -78,7 +79,11 @@ PLANS: tuple[tuple[str, Integrator], ...] = (
 The family is the cause of stiffness: an equality whose solref has a time constant ("solref") or a
 stiffness ("direct"), "gravity" without a constraint, or "damping" between can and load.
 """
-SHADES = {"exploded": "#E8A27C", "stable, inaccurate": "#BFDFF2", "stable and accurate": COLOURS[0]}
+SHADES = {
+    "explodes": "#E8A27C",
+    f"stable, off by more than {100 * ACCURACY:g} %": "#BFDFF2",
+    f"stable, off by less than {100 * ACCURACY:g} %": COLOURS[0],
+}
 """The colours of the outcomes, which differ in hue and in brightness."""
 _THEORY: dict[str, Any] = {"color": "black", "linewidth": 1.6}
 """The style of a border that theory predicts."""
@@ -149,6 +154,10 @@ class Family(NamedTuple):
     values: tuple[float, float]
     label: str
     """The quantity that varies, with its unit."""
+    power: float
+    """The limit of stability is a timestep times the value to this power, where it is a law."""
+    law: str
+    """That limit in letters, with {} for its number."""
     title: str
     caption: str
 
@@ -158,29 +167,37 @@ FAMILIES = {
         (1e-4, 1.0),
         (1e-4, 1e-1),
         "time constant of solref [s]",
-        "How stiff may a constraint be? Theory draws the line where MuJoCo's runs explode",
-        "A joint equality with refsafe off: timestep against the time constant of solref.",
+        -1.0,
+        "{} τ",
+        "A stiffer constraint needs a shorter timestep, except under discrete",
+        "A joint equality with refsafe off: timestep h against the time constant τ of solref.",
     ),
     "direct": Family(
         (1e-5, 1.0),
         (1e2, 1e10),
         "stiffness K of solref [1/s²]",
-        "A constraint with a direct (negative) solref",
-        "Timestep against K of solref = (−K, −2√K), which refsafe does not touch.",
+        0.5,
+        "{}/√K",
+        "A stiffer direct solref needs a shorter timestep, except under discrete",
+        "Timestep h against K of solref = (−K, −2√K), which refsafe does not touch.",
     ),
     "gravity": Family(
         (1e-3, 10.0),
         (1e-3, 1e3),
         "gravity [m/s²]",
-        "A can that swings in ever stronger gravity, which no integrator takes implicitly",
-        "No constraint: timestep against gravity.",
+        0.5,
+        "{} √(1 m/g)",
+        "Gravity limits the timestep of every integrator, the implicit ones as well",
+        "A can that swings without a constraint: timestep h against gravity g.",
     ),
     "damping": Family(
         (2.5e-4, 1.6e-2),
         (1e-4, 1e1),
         "damping [N m s]",
-        "Damping between can and load: which timestep explodes, and which is accurate",
-        "No constraint: timestep against damping, for half a metal can of beer. "
+        1.0,
+        "{} N m s²/c",
+        "Damping limits the timestep of explicit integrators alone",
+        "No constraint: timestep h against damping c, for half a metal can of beer. "
         "Real liquids have at most 0.02 N m s.",
     ),
 }
@@ -426,33 +443,80 @@ def figures(stored: StoredMaps) -> dict[str, Callable[[pathlib.Path], None]]:
     return drawings
 
 
-def draw(path: pathlib.Path, maps: Sequence[StabilityMap]) -> None:
-    """Write maps of one family side by side, to `path` with .svg appended."""
+def draw(path: pathlib.Path | Picture, maps: Sequence[StabilityMap]) -> None:
+    """Write maps of one family side by side, to `path` with .svg appended.
+
+    Integrators whose runs all end alike share a panel.
+    """
     family = FAMILIES[maps[0].family]
-    columns = 3 if len(maps) > 4 else min(2, len(maps))
-    rows = math.ceil(len(maps) / columns)
-    width = 3.2 * columns + 0.4
-    height = 2.9 * rows + 1.7
-    with chart(path, rows, columns, width, height, family.title, family.caption) as panels:
-        for axes in panels[len(maps) :]:
+    alike: dict[tuple[str, ...], list[StabilityMap]] = {}
+    for one_map in maps:
+        alike.setdefault(tuple(one_map.measured), []).append(one_map)
+    groups = list(alike.values())
+    columns = 3 if len(groups) == 3 else min(2, len(groups))
+    rows = math.ceil(len(groups) / columns)
+    width = 9.0 if columns > 1 else 5.0
+    height = 2.7 * rows + 2.3
+    near = max(_RESOLUTION - 1, *(one_map.worst for one_map in maps))
+    subtitle = f"{family.caption} Runs explode where linear theory says, within {100 * near:.0f} %."
+    with chart(path, rows, columns, width, height, family.title, subtitle) as panels:
+        for axes in panels[len(groups) :]:
             axes.set_visible(False)
-        for place, (axes, one_map) in enumerate(zip(panels, maps, strict=False)):
-            _draw_cells(axes, one_map)
-            predicted = [border.predicted for border in one_map.boundaries]
-            measured = [border.measured for border in one_map.boundaries]
-            _draw_border(axes, one_map, predicted, _THEORY)
-            _draw_border(axes, one_map, measured, _MEASURED)
-            axes.set_title(one_map.integrator)
-            is_lowest = place + columns >= len(maps)
+        for place, (axes, group) in enumerate(zip(panels, groups, strict=False)):
+            shown = group[0]
+            _draw_cells(axes, shown)
+            predicted = [border.predicted for border in shown.boundaries]
+            measured = [border.measured for border in shown.boundaries]
+            _draw_border(axes, shown, predicted, _THEORY)
+            _draw_border(axes, shown, measured, _MEASURED)
+            names = textwrap.fill(", ".join(one_map.integrator for one_map in group), 72 // columns)
+            axes.set_title(f"{names}\n{_limit(shown)}")
+            is_lowest = place + columns >= len(groups)
             axes.set_xlabel("timestep h [s]" if is_lowest else "")
+            axes.tick_params(labelbottom=is_lowest)
             is_first = place % columns == 0
             axes.set_ylabel(family.label if is_first else "")
+            axes.tick_params(labelleft=is_first)
         handles: list[Artist] = []
         for name, shade in SHADES.items():
             handles.append(Patch(facecolor=shade, label=name))
         handles.append(Line2D([], [], label="limit of stability, theory", **_THEORY))
         handles.append(Line2D([], [], label="the same, measured", **_MEASURED))
         name_below(panels, 3, handles)
+
+
+def _limit(one_map: StabilityMap) -> str:
+    """Return the timesteps that are stable by theory, as a law of the family's quantity.
+
+    It is the law of most values: of others, something else may set the limit.
+    """
+    family = FAMILIES[one_map.family]
+    values = []
+    timesteps = []
+    for value, border in zip(one_map.values, one_map.boundaries, strict=True):
+        if border.predicted is not None:
+            values.append(value)
+            timesteps.append(border.predicted)
+    if not values:
+        return "stable with every timestep"
+    found = [
+        _Law(np.array(timesteps) * np.array(values) ** power, text)
+        for power, text in ((family.power, family.law), (0.0, "{} s"))
+    ]
+    law = max(found, key=lambda law: law.share)
+    return f"stable below h = {law.text.format(f'{np.median(law.constants):.2g}')}"
+
+
+class _Law(NamedTuple):
+    """What may be constant along a border."""
+
+    constants: np.ndarray
+    text: str
+
+    @property
+    def share(self) -> float:
+        """The share of constants that differ by less than 2 % from their median."""
+        return float(np.mean(np.abs(self.constants / np.median(self.constants) - 1) < 0.02))
 
 
 def _draw_border(
