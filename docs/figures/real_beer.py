@@ -57,6 +57,12 @@ SWING = 0.15
 """Tilt [rad] with which the beer of the swing is let go: linear theory holds up to 0.2."""
 _SURFACE_TENSION = 0.0728
 """Surface tension of water at 20 degrees Celsius [N/m]; IAPWS."""
+_FAST = 5.0
+"""The largest speed [m/s] in the plot of all liquids."""
+_SLOW = 0.6
+"""The largest speed [m/s] in the plot of the slow ones."""
+_SEEN_CLOSER = 2.0
+"""How long the slow ones are shown [s]."""
 _BEYOND = {"color": COLOURS[0], "linestyle": ":", "linewidth": 1.3}
 """Look of motions in which the wall's centrifugal acceleration exceeds g cos(alpha)."""
 _TOO_FAST = "beyond the model: too fast for the liquid to stay below"
@@ -158,17 +164,19 @@ def draw_swing(path: pathlib.Path) -> None:
     A grey line has all modes of the liquid without viscosity.
     """
     times = np.linspace(0, 1, 501)
-    beer = LIQUIDS["beer"].density
+    density = LIQUIDS["beer"].density
     scenes = {
-        "the paper's beer, a solid that slides": sliding(0.0, 0.5, CAN, beer),
+        "the paper's beer, a solid that slides": sliding(0.0, 0.5, CAN, density),
         "liquid beer: the slowest mode": liquid("beer", 0.0, 0.5, CAN),
     }
-    title = "Liquid beer swings half as fast again as the paper's"
+    paper, beer = scenes.values()
+    ratio = beer.frequency() / paper.frequency()
+    title = f"Liquid beer swings {ratio:.2f} times as fast as the paper's solid beer"
     subtitle = (
         f"half-full 12-oz can of {1e3 * CAN.mass:.3g} g on level ground; let go at a tilt of "
         f"{SWING:g} rad; lines by MuJoCo"
     )
-    with chart(path, 1, 2, width=10, height=4.6, title=title, subtitle=subtitle) as (tilts, places):
+    with chart(path, 2, 1, width=8, height=6.6, title=title, subtitle=subtitle) as (tilts, places):
         for (name, scene), colour in zip(scenes.items(), (COLOURS[0], COLOURS[1]), strict=True):
             run = simulate(scene, times[-1], SWING, tolerance=TOLERANCE, times=times)
             truth = exact(scene, times[::10], SWING)
@@ -179,9 +187,10 @@ def draw_swing(path: pathlib.Path) -> None:
             places.plot(truth.time, 1e3 * truth.distance, **_POINTS)
             _draw_all_modes(scene, times, tilts, places)
         tilts.set(title="The surface of the beer", ylabel="tilt φ [rad]")
-        places.set(title="The can", ylabel="distance u from the start [mm]")
+        places.set(title="The can", ylabel="u from the start [mm]", xlabel="time t [s]")
+        tilts.tick_params(labelbottom=False)
         for axes in (tilts, places):
-            axes.set(xlabel="time t [s]", xlim=(0, 1))
+            axes.set_xlim(0, 1)
         name_below([tilts, places], 2)
 
 
@@ -202,21 +211,22 @@ def draw_first_metre(path: pathlib.Path) -> None:
 
     The left panel has three inclines, the right one the spread on the gentlest.
     """
-    title = "An estimate: the friction of a little water makes a can slower than an empty one"
+    mean, _ = _simulated(math.radians(_INCLINES[0]))
+    title = f"An estimate: a little water slows a can from ½ to {mean.min():.2f} g sin α"
     subtitle = (
         f"12-oz can of {1e3 * CAN.mass:.3g} g with water, let go with a level surface; "
-        "no measurement is fitted"
+        "no measurement is fitted; points are exact theory"
     )
-    with chart(path, 1, 2, width=10, height=6.6, title=title, subtitle=subtitle) as panels:
+    with chart(path, 1, 2, width=9, height=6.2, title=title, subtitle=subtitle) as panels:
         inclines, spread = panels
         for axes in panels:
             _prepare_first_metre(axes)
         _draw_inclines(inclines)
         _draw_spread(spread)
-        for axes in panels:
-            axes.plot([], [], label=_TOO_FAST, **_BEYOND)
         _note_facts(inclines)
-        name_below([inclines, spread], 2)
+        (lump,) = inclines.plot([], [], color=COLOURS[0], label="MuJoCo: friction of water")
+        (fast,) = inclines.plot([], [], label=_TOO_FAST, **_BEYOND)
+        name_below([inclines], 2, [lump, fast])
 
 
 def _prepare_first_metre(axes: Axes) -> None:
@@ -224,17 +234,15 @@ def _prepare_first_metre(axes: Axes) -> None:
     gentle = math.radians(_INCLINES[0])
     free = [water_in(float(volume), gentle, friction=0.0) for volume in _VOLUMES]
     footnote = [scene.acceleration() / (scene.gravity * math.sin(gentle)) for scene in free]
-    label = "without friction, beer that does not swing: footnote 4"
     axes.axvspan(_VOLUMES[0], puddle(capillary_length()), color="#EFEFEF", zorder=0)
     axes.axhline(0.5, **REFERENCE)
     axes.axhline(1.0, **REFERENCE)
-    axes.plot(_VOLUMES, footnote, label=label, **THEORY)
-    axes.set(xscale="log", xlim=(_VOLUMES[0], 400), ylim=(0.27, 1.08))
+    axes.plot(_VOLUMES, footnote, **THEORY)
+    axes.set(xscale="log", xlim=(_VOLUMES[0], 400), ylim=(0.25, 1.1))
     marks = (1, 3, 10, 30, 100, 350)
     axes.set_xticks(marks, map(str, marks))
     axes.tick_params(which="minor", labelbottom=False)
     axes.set_xlabel("water in the can [mL]")
-    axes.set_ylabel("mean acceleration over the first metre / g sin α")
 
 
 def _draw_inclines(axes: Axes) -> None:
@@ -244,13 +252,12 @@ def _draw_inclines(axes: Axes) -> None:
         mean, lump = _simulated(incline)
         axes.plot(_VOLUMES, mean, **_BEYOND)
         if lump.any():
-            named = f"MuJoCo: friction of water, {degrees:g}°"
-            axes.plot(_VOLUMES, np.where(lump, mean, np.nan), color=COLOURS[0], label=named)
+            axes.plot(_VOLUMES, np.where(lump, mean, np.nan), color=COLOURS[0])
         theory = [water_in(volume, incline) for volume in _FEW]
         motions = [exact(scene, times_of(scene), -incline) for scene in theory]
-        exactly = [over_first_metre(motion) for motion in motions]
-        axes.plot(_FEW, exactly, label="exact theory of the same", **_POINTS)
+        axes.plot(_FEW, [over_first_metre(motion) for motion in motions], **_POINTS)
     axes.set_title("On three inclines, without air")
+    axes.set_ylabel("mean acceleration over the first metre / g sin α")
 
 
 def _draw_spread(axes: Axes) -> None:
@@ -260,28 +267,28 @@ def _draw_spread(axes: Axes) -> None:
     most, _ = _simulated(gentle, 1 / SPREAD)
     least, _ = _simulated(gentle, SPREAD)
     with_air, _ = _simulated(gentle, 1.0, DRAG)
-    band = f"the friction divided or multiplied by {SPREAD:g}"
-    axes.fill_between(_VOLUMES, least, most, color=COLOURS[5], alpha=0.3, linewidth=0, label=band)
+    axes.fill_between(_VOLUMES, least, most, color=COLOURS[5], alpha=0.3, linewidth=0)
     axes.plot(_VOLUMES, mean, **_BEYOND)
     axes.plot(_VOLUMES, np.where(lump, mean, np.nan), color=COLOURS[0])
-    label = "MuJoCo: with the air as well, 2°"
-    axes.plot(_VOLUMES, with_air, "--", color=COLOURS[1], linewidth=1.2, label=label)
-    axes.set_title(f"How sure it is, at {in_degrees(gentle)}")
+    axes.plot(_VOLUMES, with_air, "--", color=COLOURS[1], linewidth=1.2)
+    axes.set_title(f"How sure it is, on {in_degrees(gentle)}")
+    axes.tick_params(labelleft=False)
+    note(axes, "with air as well", (1.15, 0.35), (0, 0), color=COLOURS[1])
+    note(axes, "friction doubled\nto halved (band)", (40, 0.44), (4, 0), color=COLOURS[0])
 
 
 def _note_facts(axes: Axes) -> None:
     """Write what others measured into a panel, and what its lines are."""
-    full = "Jackson et al.: a nearly full can comes near g sin α"
-    empty = "Jackson et al.: a nearly empty can\nis slower than ½ g sin α"
+    thin = f"a puddle\nunder {1e3 * capillary_length():.1f} mm:\nsurface tension\nshapes it"
     steepest_first = ", ".join(f"{degrees:g}°" for degrees in _INCLINES[::-1])
-    thin = f"a puddle less than {1e3 * capillary_length():.1f} mm deep"
     axes.axvline(_ROSCH, ymax=0.6, linestyle="--", **REFERENCE)
-    note(axes, "Rosch: slower near 10 mL", (_ROSCH, 0.38), (6, 0))
-    note(axes, full, (400, 1.035), (0, 0), ha="right")
-    note(axes, empty, (0.33, 0.33), (0, 0))
-    note(axes, f"from above: {steepest_first}", (400, 0.57), (0, 0), ha="right")
+    note(axes, "Jackson: nearly full cans\ncome near g sin α", (1.1, 1.05), (0, 0))
+    note(axes, thin, (1.1, 0.85), (0, 0))
+    note(axes, "Rosch: slower\nnear 10 mL", (_ROSCH, 0.36), (6, 0))
+    note(axes, "Jackson: nearly\nempty cans are\nslower than ½", (1.1, 0.32), (0, 0))
     note(axes, "hoop: ½", (400, 0.5), (0, 7), ha="right")
-    note(axes, f"{thin},\nwhich surface tension shapes", (0.33, 0.74), (0, 0))
+    note(axes, f"{steepest_first}\nfrom above", (45, 0.63), (10, 0), color=COLOURS[0])
+    note(axes, "no friction:\nfootnote 4", (1.1, 0.65), (0, 0))
 
 
 def draw_liquids(path: pathlib.Path) -> None:
@@ -295,34 +302,51 @@ def draw_liquids(path: pathlib.Path) -> None:
         used = liquid_in(name)
         scenes[name] = Scene(Can(), used.swing.load, damping=used.damping)
     scenes["ice"] = frozen()
-    title = "From frictionless to frozen: a lump of liquid comes to a terminal speed"
+    ends = [scenes[name].terminal_speed() for name in (NAMES[0], NAMES[-1])]
+    title = (
+        f"A can comes to a terminal speed: {ends[0]:.1f} m/s with {NAMES[0]}, "
+        f"{100 * ends[1]:.0f} cm/s with {NAMES[-1]}"
+    )
     subtitle = (
         f"half-full massless can, incline {in_degrees(INCLINE)}; let go with a level surface; "
-        "lines by MuJoCo"
+        "lines by MuJoCo, points are exact theory"
     )
-    with chart(path, 1, 2, width=10, height=5.6, title=title, subtitle=subtitle) as (fast, slow):
+    with chart(path, 1, 2, width=9, height=5.6, title=title, subtitle=subtitle) as (fast, slow):
         for (name, scene), colour in zip(scenes.items(), _PAINTS, strict=True):
             run = let_go(scene, times)
             truth = exact(scene, times[::50], -INCLINE)
             is_real = name in NAMES
             whole = lump_until(run) if is_real else math.inf
             lump = run.u - run.u[0] < whole
-            for axes in (fast, slow):
+            for axes, last in ((fast, times[-1]), (slow, _SEEN_CLOSER)):
+                shown = times <= last
+                speed = np.where(lump, run.u_dot, np.nan)
                 if not lump.all():
-                    axes.plot(times, run.u_dot, **(_BEYOND | {"color": colour}))
-                axes.plot(times, np.where(lump, run.u_dot, np.nan), color=colour, label=name)
-                axes.plot(truth.time, truth.u_dot, label="exact theory", **_POINTS)
+                    axes.plot(times[shown], run.u_dot[shown], **(_BEYOND | {"color": colour}))
+                axes.plot(times[shown], speed[shown], color=colour)
+                axes.plot(truth.time[shown[::50]], truth.u_dot[shown[::50]], **_POINTS)
                 if is_real and lump.all():
-                    axes.axhline(scene.terminal_speed(), color=colour, linestyle="--", linewidth=1)
-            if not lump.all():
-                note(fast, name, (times[-1], run.u_dot[-1]), (-4, 8), ha="right")
-        fast.plot([], [], "--", color=GREY, linewidth=1, label="terminal speed")
-        fast.plot([], [], label=_TOO_FAST, **(_BEYOND | {"color": GREY}))
+                    terminal = [scene.terminal_speed()] * 2
+                    axes.plot([0, last], terminal, color=colour, linestyle="--", linewidth=1)
+            end = float(np.interp(_SEEN_CLOSER, times, run.u_dot))
+            if end < _SLOW:
+                note(slow, name, (_SEEN_CLOSER, end), (6, 0), color=colour)
+            elif is_real:
+                note(fast, name, (times[-1], run.u_dot[-1]), (-4, 8), color=colour, ha="right")
+            else:
+                steepest = int(np.argmax(run.u_dot > _FAST - 1))
+                note(fast, name, (times[steepest], _FAST - 1), (-6, 4), color=colour, ha="right")
+        note(fast, "glycerol, honey, ice", (times[-1], 0.24), (-4, 7), ha="right")
+        (terminal,) = fast.plot([], [], "--", color=GREY, linewidth=1, label="terminal speed")
+        (beyond,) = fast.plot([], [], label=_TOO_FAST, **(_BEYOND | {"color": GREY}))
         for axes in (fast, slow):
-            axes.set(xlabel="time t [s]", ylabel="speed of the can down the incline [m/s]")
-        fast.set(title="All of them", xlim=(0, 6), ylim=(-0.3, 5))
-        slow.set(title="The slow ones, seen closer", xlim=(0, 2), ylim=(-0.2, 0.6))
-        name_below([fast, slow], 5)
+            axes.set_xlabel("time t [s]")
+        slow.set_ylabel("speed [m/s]")
+        fast.set_ylabel("speed of the can down the incline [m/s]")
+        fast.set(title="All of them", xlim=(0, times[-1]), ylim=(-0.3, _FAST))
+        slow.set(title="The slow ones, seen closer", xlim=(0, 1.3 * _SEEN_CLOSER))
+        slow.set(ylim=(-0.2, _SLOW), xticks=np.linspace(0, _SEEN_CLOSER, 5))
+        name_below([fast], 2, [terminal, beyond])
 
 
 if __name__ == "__main__":

@@ -10,8 +10,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Polygon
 
-from mjbeer import Scene, frozen
+from mjbeer import Can, Scene, frozen
 from mjbeer.output.plots import COLOURS, GREY, chart
+from mjbeer.theory.liquid_properties import LIQUIDS
 
 HERE = pathlib.Path(__file__).parent
 BEER = "#E8A33D"
@@ -76,31 +77,36 @@ def point_at(axes: Axes, target: np.ndarray, place: tuple[float, float], text: s
 
 def draw_rolling() -> None:
     """Draw the three ways in which a model can be made to roll."""
-    with chart(HERE / "rolling", 1, 3, 11, 4.2) as (reduced, equality, contact):
+    title = "A model rolls by its coordinates, by an equation, or by friction"
+    subtitle = "Only with contact, the third way, can the can slip and leave the incline."
+    with chart(HERE / "rolling", 1, 3, 9, 4.6, title, subtitle) as (reduced, equality, contact):
         for axes, name in ((reduced, "reduced"), (equality, "equality"), (contact, "contact")):
             can(axes, math.pi / 2, math.radians(-50))
             axes.plot(
-                [-1.6, 1.6], [-1, -1], color="black" if axes is contact else "#C4C4C4", linewidth=2
+                [-1.45, 1.45],
+                [-1, -1],
+                color="black" if axes is contact else "#C4C4C4",
+                linewidth=2,
             )
-            axes.set(xlim=(-1.65, 1.65), ylim=(-2.05, 1.5))
+            axes.set(xlim=(-1.5, 1.5), ylim=(-2.35, 1.5))
             axes.set_title(name, loc="center", fontweight="bold")
         fixed = np.array([0, 0.75])
         site = on_circle(math.radians(-50), 0.75)
         reduced.plot(*np.transpose([fixed, site]), color=FORCE, linewidth=2.5)
         reduced.plot(*np.transpose([fixed, [0, 0], site]), "--", color=LETTER, linewidth=1)
         reduced.plot(*np.transpose([fixed, site]), "o", color=FORCE, markersize=6)
-        write(reduced, "r", (0.1, 0.4), LETTER)
-        write(reduced, "r", (-0.22, -0.36), LETTER)
-        write(reduced, "fixed point", (0.75, 1.0), GREY, ha="left", fontsize="small")
-        reduced.plot([0.05, 0.72], [0.77, 0.98], color=GREY, linewidth=0.8)
-        write(reduced, "point of\nthe can", (-1.1, -0.62), GREY, ha="right", fontsize="small")
+        write(reduced, "r", (0.13, 0.4), LETTER)
+        write(reduced, "r", (-0.22, -0.4), LETTER)
+        write(reduced, "tendon", (-0.3, 0.28), FORCE, ha="right", fontsize="9.5")
+        point_at(reduced, fixed, (0.75, 1.2), "a fixed point")
+        point_at(reduced, site, (-0.5, -1.25), "a point of the can")
         write(
             reduced,
-            "no constraint: the armature of the\ntendon has the inertia of rolling",
-            (0, -1.6),
+            "There is no constraint:\nthe tendon's armature adds\nthe inertia of rolling.",
+            (0, -1.9),
         )
-        arrow(equality, np.array([-0.2, 0]), np.array([1.45, 0]), LETTER)
-        write(equality, "u", (1.3, 0.17), LETTER)
+        arrow(equality, np.array([0, 0]), np.array([1.4, 0]), LETTER)
+        write(equality, "u", (1.3, 0.2), LETTER)
         arrow(
             equality,
             np.array([-0.42, 1.1]),
@@ -108,31 +114,45 @@ def draw_rolling() -> None:
             LETTER,
             connectionstyle="arc3,rad=-0.3",
         )
-        write(equality, "turn", (0.1, 1.38), LETTER)
-        write(equality, "two joints and one equation\nbetween them: u = a · turn", (0, -1.6))
-        arrow(contact, np.array([0, -1.75]), np.array([0, -1.02]), FORCE)
-        write(contact, "N", (0.16, -1.5), FORCE)
+        write(equality, "roll", (0.1, 1.4), LETTER)
+        write(equality, "Two joints are tied\nby an equality constraint,\nroll = u/a.", (0, -1.9))
+        arrow(contact, np.array([0, -1.55]), np.array([0, -1.02]), FORCE)
+        write(contact, "N", (0.2, -1.35), FORCE)
         arrow(contact, np.array([0, -1.07]), np.array([-0.7, -1.07]), FORCE)
-        write(contact, "F", (-0.85, -1.17), FORCE)
-        write(contact, "a cylinder on a plane:\nit may slip and lift", (0, -1.9))
+        write(contact, "F", (-0.85, -1.2), FORCE)
+        write(
+            contact,
+            "A cylinder lies on a plane:\nfriction makes it roll\nas long as F ≤ μN.",
+            (0, -1.95),
+        )
 
 
 def draw_layer() -> None:
     """Draw the layer of liquid that the wall of a rolling can drags along."""
-    with chart(HERE / "layer", width=7, height=4.2) as (axes,):
-        half = math.radians(62)
+    half = math.radians(62)
+    radius = Can().radius
+    speed = 0.5
+    wetted = 2 * half * radius
+    thickness = math.sqrt(LIQUIDS["water"].viscosity * wetted / speed)
+    drawn = 0.255
+    title = f"The wall drags along a layer of water that is {1e3 * thickness:.1f} mm thick"
+    subtitle = (
+        f"12-oz can whose wall passes the water at {speed:g} m/s; the layer is drawn "
+        f"{drawn * radius / thickness:.0f} times as thick"
+    )
+    with chart(HERE / "layer", 1, 1, 8, 5, title, subtitle) as (axes,):
         can(axes, half, math.radians(-14))
         angles = math.radians(-14) + np.linspace(half, -half, 181)
         # It grows with the root of the distance.
-        thick = 0.035 + 0.22 * np.sqrt(np.linspace(0, 1, 181))
+        thick = drawn * np.sqrt(np.linspace(0, 1, 181))
         inner = (1 - thick[:, np.newaxis]) * on_circle(angles)
         layer = np.concatenate([on_circle(angles), inner[::-1]])
-        (shown,) = axes.fill(*layer.T, color=COLOURS[5], alpha=0.6, linewidth=0)
+        (shown,) = axes.fill(*layer.T, color=COLOURS[5], alpha=0.8, linewidth=0)
         shown.set_clip_path(Polygon(on_circle(angles), transform=axes.transData))
         path = on_circle(angles, 1.1)
         axes.plot(*path.T, color=LETTER, linewidth=1)
         arrow(axes, path[-3], path[-1], LETTER)
-        write(axes, "X", (-0.42, -1.16), LETTER)
+        write(axes, "wetted arc X", (-0.5, -1.22), LETTER)
         arrow(
             axes,
             on_circle(math.radians(120), 0.88),
@@ -140,14 +160,15 @@ def draw_layer() -> None:
             FORCE,
             connectionstyle="arc3,rad=-0.2",
         )
-        write(axes, "w", (0.62, 0.12), FORCE)
-        begins = on_circle(math.radians(30), 0.97)
-        thickest = on_circle(math.radians(-60), 0.86)
-        still = on_circle(math.radians(-5), 0.5)
-        point_at(axes, begins, (1.5, -0.95), "the layer begins here,\nwhere the wall dips in")
-        point_at(axes, thickest, (-1.55, -0.95), "and is thickest here:\n√(νX/U) with U = aw")
-        point_at(axes, still, (1.55, 0.45), "the liquid above it\nlies still")
-        axes.set(xlim=(-2.2, 2.2), ylim=(-1.35, 1.1))
+        write(axes, "w", (0.68, 0.18), FORCE)
+        write(axes, "The wall passes the liquid\nat a speed U = aw.", (-0.05, 0.5), FORCE)
+        begins = on_circle(math.radians(40), 0.98)
+        thickest = on_circle(math.radians(-64), 0.9)
+        still = on_circle(math.radians(10), 0.62)
+        point_at(axes, begins, (1.75, -0.8), "The layer begins\nwhere the wall enters\nthe liquid.")
+        point_at(axes, thickest, (-1.8, -0.55), "It is thickest\nwhere the wall leaves:\n√(νX/U).")
+        point_at(axes, still, (1.75, -0.02), "The liquid above\nthe layer lies still.")
+        axes.set(xlim=(-2.4, 2.4), ylim=(-1.35, 1.1))
 
 
 def height(scene: Scene, phi: float | np.ndarray) -> np.ndarray:
@@ -191,7 +212,7 @@ def draw_swing(axes: Axes) -> None:
         axes.plot(place, energy, "o", color=colour, markersize=5)
     write(axes, "arc", ((rest + turn) / 2, energy + 0.17), ARC)
     write(axes, "arc", ((rest + other_turn) / 2, energy + 0.17), OTHER_ARC)
-    write(axes, "turning points, s = 0", (rest, energy + 0.55), GREY, fontsize="small")
+    write(axes, "turning points: s = 0", (rest, energy + 0.55), GREY)
     for place in (turn, other_turn):
         axes.annotate(
             "",
@@ -201,7 +222,7 @@ def draw_swing(axes: Axes) -> None:
         )
     write(axes, "E", (low - 0.45, energy + 0.14), GREY)
     write(axes, "V", (low - 0.2, float(height(scene, low - 0.45))))
-    axes.set_title("a swing", loc="center", fontweight="bold")
+    axes.set_title("A swing: two arcs")
 
 
 def draw_slope(axes: Axes) -> None:
@@ -227,16 +248,20 @@ def draw_slope(axes: Axes) -> None:
         axes.plot([edge, edge], [energy - 0.5, energy + 0.5], color=GREY, linewidth=0.8)
     write(axes, "turn", (crest, energy + 0.7), TURNS)
     write(axes, "turn", (crest + math.tau, energy + 0.7), TURNS)
-    write(axes, "uphill", (first + math.tau + 0.2, energy + 1.1), TURNS, fontsize="small")
-    write(axes, "downhill", (first + math.tau + 0.2, energy - 0.8), TURNS, fontsize="small")
+    write(axes, "uphill", (first + math.tau, energy + 1.15), TURNS)
+    write(axes, "downhill", (first + math.tau, energy - 0.8), TURNS)
     beside = (crest + math.tau + 0.3, energy - 1.6)
-    write(axes, "energy\nat the crest", beside, GREY, ha="left", fontsize="small")
-    axes.set_title("up a slope and down again", loc="center", fontweight="bold")
+    write(axes, "energy\nat the crest", beside, GREY, ha="left")
+    axes.set_title("Up a slope and down again: turns and an arc")
 
 
 def draw_legs() -> None:
     """Draw the legs into which exact theory cuts a motion."""
-    with chart(HERE / "legs", 1, 2, 11, 4) as (swing, slope):
+    title = "A motion is cut into arcs, which turn back, and turns, which do not"
+    subtitle = (
+        "V is the potential, E the energy of the motion; s² is the angle from a turning point."
+    )
+    with chart(HERE / "legs", 1, 2, 9, 4.3, title, subtitle) as (swing, slope):
         draw_swing(swing)
         draw_slope(slope)
 
