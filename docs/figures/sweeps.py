@@ -12,14 +12,12 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 from scipy.optimize import bisect, brentq
 
 import mjbeer
 from mjbeer import Can, Scene, exact, frozen, sliding
 from mjbeer.exceptions import NoEquilibriumError, NoLibrationError
-from mjbeer.output.plots import COLOURS, chart, name_below
+from mjbeer.output.plots import COLOURS, chart
 
 HERE = pathlib.Path(__file__).parent
 SHADES = ["#D6E6F2", "#7FB3D9", "#F3D9A4", "#E8A583"]
@@ -57,20 +55,22 @@ def draw_outcomes(friction: float = 0.5, duration: float = 2.0) -> None:
     down = np.array([border(rolls_down, fill) for fill in fills])
     near = math.radians(0.01)
     # Beyond parting, there is nothing to see.
-    seen = (part < STEEPEST, slip < part - near, down <= part + near)
-    names = [
-        "rocks",
-        "rolls down",
-        f"slips (friction coefficient {friction:g})",
-        "parts from the incline, however rough",
-    ]
-    subtitle = f"massless can of frozen beer, released at rest with φ = 0, {duration:g} s"
-    with chart(HERE / "sweep-outcomes", 1, 1, 8, 6, "What a frozen can does", subtitle) as (axes,):
-        colour(axes, np.degrees(inclines), fills, found, "incline [°]", "fill")
+    seen = (part < STEEPEST, slip < part - near, (down <= part + near) & (down < STEEPEST))
+    gentle = float(np.interp(0.5, fills, np.degrees(np.minimum(down, slip))))
+    title = f"Half full, frozen beer rocks below {gentle:.0f}°, and hops on steeper inclines"
+    subtitle = (
+        f"massless can of frozen beer, released at rest with φ = 0, for {duration:g} s; "
+        "lines are exact theory"
+    )
+    with chart(HERE / "sweep-outcomes", 1, 1, 8, 5.6, title, subtitle) as (axes,):
+        fill = "fill, depth of the beer / diameter"
+        colour(axes, np.degrees(inclines), fills, found, "incline [°]", fill)
         for line, shown in zip((part, slip, down), seen, strict=True):
             axes.plot(np.degrees(np.where(shown, line, np.nan)), fills, **LINE)
-        borders = Line2D([], [], label="borders by exact theory", **LINE)
-        name_below([axes], 3, [*patches(names), borders])
+        name(axes, "rocks", (9, 0.35))
+        name(axes, "rolls down", (5, 0.9))
+        name(axes, f"slips, with a friction coefficient of {friction:g}", (33, 0.13))
+        name(axes, "leaves the incline,\nhowever rough it is", (31, 0.65))
 
 
 def border(excess: Callable[[Scene], float], fill: float) -> float:
@@ -110,10 +110,12 @@ def draw_periods() -> None:
         )
         measured[row, swings[row]] = swept["period"]
         theory[row, swings[row]] = [scene.period(amplitude) for amplitude in of_scene]
-    subtitle = "half-full massless can, beer frozen, released at rest below its equilibrium"
-    with chart(HERE / "sweep-periods", 1, 1, 8, 5.5, "The period of a frozen can", subtitle) as (
-        axes,
-    ):
+    title = f"A frozen can takes {np.nanmin(theory):.2f} s for a swing, and longer if wide or steep"
+    subtitle = (
+        "half-full massless can, beer frozen, released at rest below its equilibrium; "
+        "lines are exact theory"
+    )
+    with chart(HERE / "sweep-periods", 1, 1, 8, 5.3, title, subtitle) as (axes,):
         tilts = np.degrees(inclines)
         swing = np.degrees(amplitudes)
         mesh = axes.pcolormesh(
@@ -123,12 +125,16 @@ def draw_periods() -> None:
         lines = axes.contour(tilts, swing, theory.T, periods, colors="white", linewidths=1)
         axes.clabel(lines, fmt=lambda period: f"{period:g} s")
         axes.plot(tilts, np.degrees(largest), **LINE)
-        axes.set(xlabel="incline [°]", ylabel="amplitude [°]", xlim=(0, tilts[-1]), ylim=(0, 180))
+        axes.set(
+            xlabel="incline [°]",
+            ylabel="amplitude of the swing [°]",
+            xlim=(0, tilts[-1]),
+            ylim=(0, 180),
+        )
         axes.grid(visible=False)
         # The layout of `chart` fails on a gridspec for the bar, which has rows without height.
         axes.figure.colorbar(mesh, ax=axes, label="period by MuJoCo [s]", use_gridspec=False)
-        label = "by exact theory: the largest swing, and periods in white"
-        name_below([axes], 1, [Line2D([], [], label=label, **LINE)])
+        name(axes, "wider, it rolls down:\nthere is no swing", (15, 150))
 
 
 def draw_damping(duration: float = 4.0) -> None:
@@ -154,18 +160,25 @@ def draw_damping(duration: float = 4.0) -> None:
     ends = (inclines[0], inclines[-1])
     near = math.radians(0.025)
     borders = [bisect(beyond, *ends, (damping,), xtol=near) for damping in shown]
-    subtitle = f"half-full can of sheet metal, let go with its surface level, {duration:g} s"
-    with chart(HERE / "sweep-damping", 1, 1, 8, 5.5, "What a damped can does", subtitle) as (axes,):
+    steady = math.degrees(frozen(can=metal).largest_incline())
+    title = (
+        f"From {math.degrees(min(borders)):.0f}° to {math.degrees(max(borders)):.0f}° damping "
+        "decides whether beer is carried over the top"
+    )
+    subtitle = (
+        f"half-full can of sheet metal, let go with its surface level, for {duration:g} s; "
+        "lines are exact theory"
+    )
+    with chart(HERE / "sweep-damping", 1, 1, 8, 5.2, title, subtitle) as (axes,):
         axes.set_xscale("log")
         colour(axes, dampings, np.degrees(inclines), found, "damping [N m s]", "incline [°]")
         axes.plot(shown, np.degrees(borders), **LINE)
-        axes.axhline(math.degrees(frozen(can=metal).largest_incline()), linestyle="--", **LINE)
-        outcomes = patches(["the load stays below", "the load is carried over the top"])
-        lines = [
-            Line2D([], [], label="border by exact theory", **LINE),
-            Line2D([], [], label="steepest with steady rolling", linestyle="--", **LINE),
-        ]
-        name_below([axes], 2, [*outcomes, *lines])
+        axes.axhline(steady, linestyle="--", **LINE)
+        axes.set_yticks(range(12, 33, 4))
+        name(axes, "The load is carried over the top.", (6e-3, 28))
+        name(axes, "The load stays below.", (6e-4, 17.5))
+        steepest = f"steepest incline with steady rolling: {steady:.1f}°"
+        name(axes, steepest, (1.3e-2, steady + 0.7), fontsize=9.5)
 
 
 def colour(
@@ -180,9 +193,9 @@ def colour(
     axes.grid(visible=False)
 
 
-def patches(names: list[str]) -> list[Patch]:
-    """Return what names the colours of a map."""
-    return [Patch(facecolor=shade, label=name) for shade, name in zip(SHADES, names, strict=False)]
+def name(axes: Axes, text: str, place: tuple[float, float], **style: float) -> None:
+    """Write what a region or a line is, with its middle at a place in the data."""
+    axes.text(*place, text, ha="center", va="center", **style)
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from mjbeer.output.plots import Picture
-from mjbeer.studies.benchmark import work_precision
+from mjbeer.studies.benchmark import benchmark_tables, work_precision
 from mjbeer.studies.benchmark.other_tools import HEYOKA
 from mjbeer.studies.benchmark.points import SHIPPED, TOLERANCE, Benchmark, Point
 
@@ -48,7 +48,7 @@ def test_a_curve_ends_where_it_reaches_rounding() -> None:
 
 def test_a_panel_has_few_curves() -> None:
     for lines in (work_precision._SMOOTH, work_precision._CONTACT):
-        assert len(lines) <= 6
+        assert len(lines) <= 5
 
 
 def test_all_panels_have_the_same_axes(stored: Benchmark, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -75,3 +75,19 @@ def test_a_single_scene_is_drawn_without_contacts(
     text = (tmp_path / "picture.svg").read_text()
     assert "in a can that rolls by friction" not in text
     assert "without compiling" in text
+
+
+def test_a_panel_and_the_title_say_how_much_longer_rk4_takes(stored: Benchmark) -> None:
+    """The numbers are those of the table."""
+    table = benchmark_tables.ratios(stored, (1e-6,))
+    rk4 = table.columns.index(benchmark_tables.RK4)
+    in_table = [row[rk4].partition(" ")[0] for row in table.rows]
+    picture = Picture("all")
+
+    work_precision.draw(stored, picture)
+
+    assert len(in_table) == 5
+    for ratio in in_table:
+        assert f">{ratio} times as long<" in picture.svg
+    ordered = sorted(in_table, key=float)
+    assert f"RK4 takes {ordered[0]} to {ordered[-1]} times" in picture.title

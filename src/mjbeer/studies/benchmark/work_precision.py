@@ -1,7 +1,7 @@
 """The diagram of a benchmark: error over run time, with a panel for each scene.
 
-Six curves are drawn for each scene of two seconds, all of compiled code. With several scenes a
-last panel has contacts. All panels have the same axes.
+Five curves are drawn for each scene of two seconds, all of compiled code; the tables have more.
+With several scenes a last panel has contacts. All panels have the same axes.
 """
 
 import math
@@ -11,9 +11,17 @@ from typing import NamedTuple
 
 from matplotlib.axes import Axes
 
-from mjbeer.output.plots import COLOURS, Picture, chart, name_below
-from mjbeer.studies.benchmark.other_tools import COMPILED_DOP853, COMPILED_ODEINT, HEYOKA
-from mjbeer.studies.benchmark.points import CASES, TOLERANCE, Benchmark, Curve, Point
+from mjbeer.output.plots import COLOURS, Picture, chart, name_below, note
+from mjbeer.studies.benchmark.other_tools import COMPILED_DOP853, HEYOKA
+from mjbeer.studies.benchmark.points import (
+    CASES,
+    TOLERANCE,
+    Benchmark,
+    Curve,
+    Point,
+    time_for,
+    time_ratio,
+)
 
 _DARK = "#333333"
 
@@ -27,26 +35,24 @@ class _Line(NamedTuple):
     """Line and marker in matplotlib's notation. A line is dashed if MuJoCo is not called."""
 
 
+_RK4 = Curve("reduced", "RK4")
 _SMOOTH = {
-    Curve("reduced", "RK4"): _Line("MuJoCo's RK4", _DARK, "-^"),
-    Curve("reduced", "DOP853"): _Line("mjbeer's DOP853 on MuJoCo", COLOURS[0], "-o"),
-    Curve("reduced", "GaussJackson"): _Line("mjbeer's Gauss-Jackson on MuJoCo", COLOURS[1], "-s"),
-    Curve(COMPILED_ODEINT, "", TOLERANCE): _Line(
-        "SciPy's odeint (LSODA) on compiled equations", COLOURS[4], "--v"
-    ),
-    Curve(COMPILED_DOP853, "", TOLERANCE): _Line("DOP853 on compiled equations", COLOURS[2], "--D"),
-    Curve(HEYOKA, "", TOLERANCE): _Line("heyoka, compiled equations", COLOURS[3], "--P"),
+    Curve(HEYOKA, "", TOLERANCE): _Line("heyoka, without MuJoCo", COLOURS[3], "--P"),
+    Curve(COMPILED_DOP853, "", TOLERANCE): _Line("DOP853, without MuJoCo", COLOURS[2], "--D"),
+    Curve("reduced", "GaussJackson"): _Line("mjbeer's Gauss-Jackson", COLOURS[1], "-s"),
+    Curve("reduced", "DOP853"): _Line("mjbeer's DOP853", COLOURS[0], "-o"),
+    _RK4: _Line("MuJoCo's RK4", _DARK, "-^"),
 }
-"""The curves of a scene whose can rolls without a constraint."""
+"""The curves of a scene whose can rolls without a constraint, fastest first."""
 _CONTACT = {
+    Curve("contact, defaults", "Euler"): _Line("Euler, usual contact", COLOURS[1], "-*"),
+    Curve("contact", "Euler"): _Line("MuJoCo's Euler", COLOURS[5], "-x"),
     Curve("contact", "DOP853"): _Line("mjbeer's DOP853", COLOURS[0], "-o"),
     Curve("contact", "RK4"): _Line("MuJoCo's RK4", _DARK, "-^"),
-    Curve("contact", "Euler"): _Line("MuJoCo's Euler", COLOURS[5], "-x"),
-    Curve("contact, defaults", "Euler"): _Line(
-        "Euler, contact as usually written", COLOURS[1], "-*"
-    ),
 }
-"""The curves of a scene whose can rolls by friction."""
+"""The curves of a scene whose can rolls by friction, largest error first."""
+_COMPARED = 1e-6
+"""The error [rad] at which a panel compares run times."""
 _CONTACT_CASE = "frozen"
 _FLOOR = 1e-13
 """Smaller errors [rad] are rounding: a curve ends with its first point at this floor."""
@@ -55,9 +61,9 @@ _CEILING = 3.0
 _X_LABEL = "run time of 2 s of motion [ms], without compiling"
 _Y_LABEL = "largest error of φ and u/a [rad]"
 _SUBTITLE = (
-    "Each point is one setting. Further left is faster, further down is more exact. Setting up and "
-    "compiling are not in the run time. Solid lines call MuJoCo; dashed lines integrate equations "
-    "that were derived by hand and compiled."
+    "Each point is one setting: further left is faster, further down more exact. Compiling is not "
+    "in the run time. Dashed: equations derived by hand and compiled. Arrows: RK4 and mjbeer's "
+    "best at 1e-6 rad, interpolated."
 )
 
 
@@ -74,24 +80,27 @@ def draw(study: Benchmark, path: pathlib.Path | Picture) -> None:
     has_contact = _CONTACT_CASE in cases
     count = len(cases) + has_contact
     rows = math.ceil(count / 2)
-    title = "What accuracy costs: error over run time"
-    with chart(path, rows, 2, 11, 3.7 * rows + 1.8, title, _SUBTITLE) as panels:
+    with chart(path, rows, 2, 9, 3.1 * rows + 2.2, _title(study), _SUBTITLE) as panels:
         shown = []
         for axes, case in zip(panels, cases, strict=False):
             shown += _draw(axes, study.of(case), _SMOOTH)
-            axes.set_title(_capital(CASES[case].story))
+            _compare(axes, study.of(case))
+            axes.set_title(_capital(CASES[case].story), fontsize=10)
         if has_contact:
             axes = panels[len(cases)]
             shown += _draw(axes, study.of(_CONTACT_CASE), _CONTACT)
-            axes.set_title("Frozen beer, rocking, in a can that rolls by friction")
-            axes.legend(loc="lower left", fontsize=9)
+            axes.set_title("Frozen beer, rocking, in a can that rolls by friction", fontsize=10)
+            axes.legend(loc="lower left", fontsize=9.5)
         for axes in panels[count:]:
             axes.set_visible(False)
         _set_axes(panels[:count], shown)
-        for axes in panels[count - 2 : count]:
-            axes.set_xlabel(_X_LABEL)
-        for axes in panels[0:count:2]:
-            axes.set_ylabel(_Y_LABEL)
+        for place, axes in enumerate(panels[:count]):
+            is_lowest = place >= count - 2
+            axes.set_xlabel(_X_LABEL if is_lowest else "")
+            axes.tick_params(labelbottom=is_lowest)
+            is_first = place % 2 == 0
+            axes.set_ylabel(_Y_LABEL if is_first else "")
+            axes.tick_params(labelleft=is_first)
         name_below(panels[: len(cases)], 3)
 
 
@@ -100,10 +109,46 @@ def _draw_single(study: Benchmark, case: str, path: pathlib.Path | Picture) -> N
     title, _, start = _capital(CASES[case].story).partition(", ")
     with chart(path, width=6.2, height=6.4, title=title, subtitle=start) as (axes,):
         shown = _draw(axes, study.of(case), _SMOOTH)
+        _compare(axes, study.of(case))
         _set_axes([axes], shown)
         axes.set_xlabel(_X_LABEL)
         axes.set_ylabel(_Y_LABEL)
         name_below([axes], 2)
+
+
+def _title(study: Benchmark) -> str:
+    """Return what a study found about RK4 and mjbeer's best setting in all scenes."""
+    ratios = [ratio for case in study.cases if (ratio := _ratio(study.of(case))) is not None]
+    if not ratios:
+        return "What accuracy costs: error over run time"
+    factors = f"{min(ratios):.2g} to {max(ratios):.2g}"
+    return f"For errors of 1e-6 rad RK4 takes {factors} times as long as mjbeer's best"
+
+
+def _ratio(found: Sequence[Point]) -> float | None:
+    """Return the run time of RK4 divided by that of the best reduced setting, at equal error."""
+    ratio = time_ratio(_of_rk4(found), _reduced(found), _COMPARED)
+    return None if ratio is None else ratio.of_least
+
+
+def _compare(axes: Axes, found: Sequence[Point]) -> None:
+    """Draw an arrow from mjbeer's best setting to RK4, where both have the compared error."""
+    ratio = _ratio(found)
+    if ratio is None:
+        return
+    best = 1e3 * time_for(_reduced(found), _COMPARED)
+    rk4 = 1e3 * time_for(_of_rk4(found), _COMPARED)
+    arrow = {"arrowstyle": "<->", "color": _DARK, "linewidth": 1.0, "shrinkA": 0, "shrinkB": 0}
+    axes.annotate("", (rk4, _COMPARED), (best, _COMPARED), arrowprops=arrow)
+    note(axes, f"{ratio:.2g} times as long", (rk4, _COMPARED), (7, 6), color=_DARK)
+
+
+def _reduced(found: Sequence[Point]) -> list[Point]:
+    return [point for point in found if point.model == _RK4.model]
+
+
+def _of_rk4(found: Sequence[Point]) -> list[Point]:
+    return [point for point in found if point.curve == _RK4]
 
 
 def _draw(axes: Axes, found: Sequence[Point], lines: Mapping[Curve, _Line]) -> list[Point]:
