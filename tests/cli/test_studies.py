@@ -16,6 +16,12 @@ def read_table(path: pathlib.Path) -> dict[str, np.ndarray]:
     return {heading: table[heading] for heading in table.dtype.names or ()}
 
 
+def simulated_period(fill: float) -> float:
+    """Return the period [s] of the sweep's frozen can with a fill on 5 degrees."""
+    scene = mjbeer.frozen(np.radians(5), fill)
+    return 2 * np.pi / mjbeer.simulate(scene, 0.8, np.radians(20), tolerance=1e-6).frequency()
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("ending", [".csv", ".nc", ".png", ".svg"])
 def test_the_file_has_what_python_gives(
@@ -44,6 +50,11 @@ def test_the_file_has_what_python_gives(
         assert xarray.load_dataset(path)["phi"].values.tolist() == same["phi"].values.tolist()
     else:
         assert path.stat().st_size > 5000
+    if ending == ".svg":
+        periods = [simulated_period(fill) for fill in (0.3, 0.5)]
+        heading = f">Period of the swing: {min(periods):.3g} to {max(periods):.3g} s<"
+        assert heading in path.read_text()
+        assert "white cells have no value" in path.read_text()
 
 
 def test_a_single_scene_is_a_table_of_one_row(tmp_path: pathlib.Path) -> None:

@@ -2,12 +2,13 @@
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from matplotlib import pyplot as plt
 
-from mjbeer import exact, frozen, simulate
+from mjbeer import exact, frozen, simulate, sliding
 from mjbeer.exceptions import ParameterError
 
 
@@ -46,6 +47,22 @@ def test_a_plot_shows_what_is_asked_for() -> None:
 
     assert np.array_equal(rate.get_lines()[1].get_ydata(), np.degrees(run.phi_dot))
     assert np.array_equal(energy.get_lines()[1].get_ydata(), run.energy)
+
+
+def test_an_energy_that_is_conserved_looks_constant() -> None:
+    """One that damping takes does not."""
+    run = exact(sliding(), np.linspace(0, 1, 101), 1.0)
+    drifted = replace(run, phi_dot=run.phi_dot * (1 + 1e-6 * run.time))
+    change = np.ptp(drifted.energy)
+    damped = exact(sliding(damping=1e-3), np.linspace(0, 1, 101), 1.0)
+
+    (constant,) = drifted.plot("energy")
+    (falling,) = damped.plot("energy")
+
+    assert np.ptp(constant.get_ylim()) > 1000 * change
+    assert [text.get_text() for text in constant.texts] == [f"constant within {change:.0e} J"]
+    assert np.ptp(falling.get_ylim()) < 1.2 * np.ptp(damped.energy)
+    assert not falling.texts
 
 
 @pytest.mark.parametrize("name", ["ph", True])

@@ -190,8 +190,19 @@ def _plot(result: Any, quantity: str, path: Path) -> None:
             shown.plot(ax=axes, x=shown.dims[0], cmap="cividis", center=False)
         else:
             shown.plot(ax=axes, marker=".")
-        axes.set_title(f"{result.attrs['make']}, {result.attrs['duration']:.6g} s")
+        axes.set_title(_heading(shown, result))
         figure.savefig(path, dpi=150)
+
+
+def _heading(shown: Any, result: Any) -> str:
+    """Return the range of what a plot shows, and in a second line what was simulated."""
+    name = shown.attrs.get("long_name", shown.name)
+    unit = shown.attrs.get("units", "")
+    known = shown.values[np.isfinite(shown.values)]
+    found = f"{known.min():.3g} to {known.max():.3g} {unit}".strip() if known.size else "no value"
+    runs = f"{result.attrs['make']}, {result.attrs['duration']:.6g} s each"
+    absent = "; white cells have no value" if shown.ndim == 2 and known.size < shown.size else ""
+    return f"{name[0].upper()}{name[1:]}: {found}\n{runs}{absent}"
 
 
 def _in_degrees(values: Any) -> Any:

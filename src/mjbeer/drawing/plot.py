@@ -1,6 +1,7 @@
 """A motion as a plot: its quantities over time, one below the other."""
 
 import math
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
@@ -9,7 +10,7 @@ from matplotlib.axes import Axes
 
 from mjbeer import require
 from mjbeer.drawing.words import in_words
-from mjbeer.output.plots import SIMULATED, STYLE, THEORY, UNPHYSICAL
+from mjbeer.output.plots import SIMULATED, STYLE, THEORY, UNPHYSICAL, note
 from mjbeer.theory.trajectory import Trajectory, exact_motion
 
 _LABELS = {
@@ -24,6 +25,8 @@ _LABELS = {
     "energy": "energy [J]",
 }
 """Labels of the quantities that a plot can show, by their names in a trajectory."""
+_CONSTANT = 1e-4
+"""A quantity that changes by less than this share of itself is drawn as constant."""
 
 
 def plot(trajectory: Trajectory, *names: str, theory: bool = False) -> tuple[Axes, ...]:
@@ -53,10 +56,14 @@ def plot(trajectory: Trajectory, *names: str, theory: bool = False) -> tuple[Axe
                 axes.plot(beneath.time, _values(beneath, name), label="exact theory", **THEORY)
             _draw_motion(axes, trajectory, name, leaves_at)
             axes.set_ylabel(_LABELS[name])
+            _show_constancy(axes)
         panels[-1].set_xlabel("time [s]")
         if len(panels[0].get_lines()) > 1:
-            panels[0].legend()
-        figure.suptitle(in_words(trajectory.scene), fontsize=STYLE["axes.titlesize"])
+            # Above the panel, where no curve is.
+            above: dict[str, Any] = {"loc": "lower right", "bbox_to_anchor": (1, 1)}
+            panels[0].legend(ncols=3, borderaxespad=0.2, **above)
+        heading = STYLE["axes.titlesize"]
+        figure.suptitle(in_words(trajectory.scene), fontsize=heading, x=0.02, ha="left")
     return panels
 
 
@@ -77,6 +84,20 @@ def _draw_motion(axes: Axes, trajectory: Trajectory, name: str, leaves_at: float
     if pulled.any():
         label = "if the incline could pull the can"
         axes.plot(time[pulled], values[pulled], label=label, **UNPHYSICAL)
+
+
+def _show_constancy(axes: Axes) -> None:
+    """Let what is constant but for an error look constant, and say how far it changes."""
+    values = np.concatenate([np.asarray(line.get_ydata()) for line in axes.get_lines()])
+    change = np.ptp(values)
+    largest = np.abs(values).max()
+    if not 0 < change < _CONSTANT * largest:
+        return
+    middle = (values.min() + values.max()) / 2
+    axes.set_ylim(middle - largest / 10, middle + largest / 10)
+    unit = axes.get_ylabel().partition("[")[2].rstrip("]")
+    text = f"constant within {change:.0e} {unit}"
+    note(axes, text, (axes.get_xlim()[0], middle), (6, 12))
 
 
 def _values(trajectory: Trajectory, name: str) -> np.ndarray:

@@ -3,7 +3,7 @@
 import math
 import os
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -109,10 +109,14 @@ class Fit:
         with plt.rc_context(STYLE | {"lines.markersize": 3}):
             figure = plt.figure(figsize=(8, 7.5), layout="constrained")
             places, deviations, speeds = figure.subplots(3, 1, sharex=True, height_ratios=(3, 2, 2))
-            places.plot(time, self.track.along, ".", color=COLOURS[1], label="track")
+            # Circles that the line of the model leaves visible.
+            circles: dict[str, Any] = {"color": COLOURS[1], "markerfacecolor": "none"}
+            places.plot(time, self.track.along, "o", markersize=5, label="track", **circles)
             places.plot(time, self.model["along"], label="model", **SIMULATED)
-            places.set_ylabel("along [m]")
-            places.legend()
+            places.set_ylabel("along the incline [m]")
+            places.legend(loc="upper left")
+            left = 1e3 * np.sqrt(np.mean(deviation**2))
+            deviations.set_title(f"What the model leaves: {left:.2g} mm (root mean square)")
             deviations.plot(time, 1e3 * deviation, ".", color=COLOURS[1])
             deviations.axhline(0, **REFERENCE)
             deviations.set_ylabel("track − model [mm]")
