@@ -57,7 +57,7 @@ def draw_outcomes(friction: float = 0.5, duration: float = 2.0) -> None:
     # Beyond parting, there is nothing to see.
     seen = (part < STEEPEST, slip < part - near, (down <= part + near) & (down < STEEPEST))
     gentle = float(np.interp(0.5, fills, np.degrees(np.minimum(down, slip))))
-    title = f"Half full, frozen beer rocks below {gentle:.0f}°, and hops on steeper inclines"
+    title = f"Half full, frozen beer rocks below {gentle:.0f}° and hops above"
     subtitle = (
         f"massless can of frozen beer, released at rest with φ = 0, for {duration:g} s; "
         "lines are exact theory"
