@@ -112,29 +112,28 @@ def holds() -> str:
             (
                 "**accuracy**",
                 f"{len(checks())} checks, nearly all against exact theory, each with a bound and "
-                "its reason: at best, periods to 1e-12 and trajectories to 1e-10 rad "
+                "its reason; at best, periods agree to 1e-12 and trajectories to 1e-10 rad "
                 "([validation](docs/validation.md))",
             ),
             (
                 "**run time**",
-                f"on the same reduced model MuJoCo's RK4 takes {ratio(RK4, 1e-3)} times as long as "
+                f"on the same model MuJoCo's RK4 takes {ratio(RK4, 1e-3)} times as long as "
                 f"mjbeer's best setting for an error of 1e-3 rad, and {ratio(RK4, 1e-6)} times for "
-                f"1e-6 rad; without MuJoCo, compiled equations that were derived by hand take "
-                f"{ratio(COMPILED_DOP853, 1e-6)} times as long with DOP853 and "
-                f"{ratio(HEYOKA, 1e-6)} times with heyoka, for 1e-6 rad "
-                "([error against run time](docs/benchmark.md))",
+                f"1e-6 rad; compiled equations without MuJoCo take {ratio(COMPILED_DOP853, 1e-6)} "
+                f"times as long with DOP853, and {ratio(HEYOKA, 1e-6)} times with heyoka, for "
+                "1e-6 rad ([error against run time](docs/benchmark.md))",
             ),
             (
                 "**stability**",
-                f"in gravity the longest stable timesteps are within {border_error():.2g} % of "
+                f"the longest stable timestep of a swing is within {border_error():.2g} % of "
                 f"linear theory; {trusted(random):,} of {ended(random):,} new random runs were "
                 f"trusted, and {wrong_of(random)}; {random.get(stability_study.NEEDLESS, 0):,} "
-                f"others were doubted although they were right, and {alone(random):,} were judged "
-                "by one theory alone ([stability](docs/stability.md))",
+                f"others were doubted although they were right; {alone(random):,} had one "
+                "independent check instead of two ([stability](docs/stability.md))",
             ),
             (
                 "**the paper**",
-                f"its 61 equations are audited in {len(paper.claims())} rows; "
+                f"an audit of its 61 equations has {len(paper.claims())} rows; "
                 f"{sum(wrong.values())} hold only after a correction: {wrong[MISPRINT]} misprints, "
                 f"{wrong[CONSEQUENCE]} consequences of one, and {wrong[APPROXIMATION]} "
                 "approximations that leave out too much ([the physics](docs/physics.md))",
