@@ -401,11 +401,11 @@ def swings() -> str:
     """
     columns = (
         "fill",
-        "no mass: paper [Hz]",
-        "no mass: liquid [Hz]",
-        "12-oz can: paper [Hz]",
+        "massless: solid [Hz]",
+        "massless: liquid [Hz]",
+        "12-oz can: solid [Hz]",
         "12-oz can: liquid [Hz]",
-        "share of the energy",
+        "energy in this mode",
         "amplitude halved after",
     )
     lines = []
@@ -434,13 +434,12 @@ def speeds() -> str:
     They are in brackets where the model does not hold.
     """
     columns = (
-        "at 20 °C",
-        "density [kg/m³]",
+        "liquid",
         "ν [m²/s]",
         "at 2° [m/s]",
         "at 10° [m/s]",
         "Reynolds number",
-        "at the wall [g]",
+        "centrifugal [g]",
         "film could hold",
     )
     lines = []
@@ -451,7 +450,6 @@ def speeds() -> str:
         speed = scene.terminal_speed()
         cells = (
             name,
-            f"{LIQUIDS[name].density:.4g}",
             f"{LIQUIDS[name].viscosity:.2g}",
             terminal_speed(name, GENTLE),
             terminal_speed(name, USUAL),
@@ -486,7 +484,6 @@ def metre() -> str:
         "no friction",
         "friction",
         "friction doubled to halved",
-        "with air",
         "model holds for",
     )
     lines = []
@@ -497,7 +494,6 @@ def metre() -> str:
         usual = with_water(volume)
         halved = with_water(volume, friction=1 / real_beer.SPREAD)
         doubled = with_water(volume, friction=real_beer.SPREAD)
-        in_air = with_water(volume, drag=real_beer.DRAG)
         until = real_beer.lump_until(usual)
         cells = (
             f"{volume:g}",
@@ -506,16 +502,15 @@ def metre() -> str:
             f"{real_beer.over_first_metre(usual):.2f}",
             f"{real_beer.over_first_metre(doubled):.2f} to "
             f"{real_beer.over_first_metre(halved):.2f}",
-            f"{real_beer.over_first_metre(in_air):.2f}",
             "the whole metre" if until > 1 else f"{until:.1f} m",
         )
         lines.append(cells)
     return table(columns, lines)
 
 
-def with_water(volume: float, friction: float = 1.0, drag: float = 0.0) -> Trajectory:
+def with_water(volume: float, friction: float = 1.0) -> Trajectory:
     """Return the first metre of a can with a `volume` [mL] of water on the gentle incline."""
-    scene = real_beer.water_in(volume, GENTLE, friction, drag)
+    scene = real_beer.water_in(volume, GENTLE, friction)
     with warnings.catch_warnings(action="ignore", category=LiquidWarning):
         return real_beer.let_go(scene, real_beer.times_of(scene))
 
