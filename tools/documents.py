@@ -247,7 +247,7 @@ def ranges() -> str:
         f"On the same model MuJoCo's RK4 takes {ratio(RK4, 1e-3)} times as long as mjbeer's best "
         f"setting for an error of 1e-3 rad, and {ratio(RK4, 1e-6)} times for 1e-6 rad. "
         f"For 1e-11 rad it takes {ratio(RK4, finest)} times as long, because it has order 4 and "
-        "Gauss–Jackson order 13. "
+        "Gauss-Jackson order 13. "
         f"Of the tools without MuJoCo, heyoka takes {ratio(HEYOKA, 1e-3)} times as long as "
         f"mjbeer's best setting for 1e-3 rad, and {ratio(HEYOKA, 1e-6)} times for 1e-6 rad; "
         f"DOP853 on compiled equations takes {ratio(COMPILED_DOP853, 1e-3)} and "
