@@ -212,7 +212,7 @@ def draw_swing(axes: Axes) -> None:
         axes.plot(place, energy, "o", color=colour, markersize=5)
     write(axes, "arc", ((rest + turn) / 2, energy + 0.17), ARC)
     write(axes, "arc", ((rest + other_turn) / 2, energy + 0.17), OTHER_ARC)
-    write(axes, "turning points: s = 0", (rest, energy + 0.55), GREY)
+    write(axes, "turning points: E = V", (rest, energy + 0.55), GREY)
     for place in (turn, other_turn):
         axes.annotate(
             "",
@@ -258,9 +258,7 @@ def draw_slope(axes: Axes) -> None:
 def draw_legs() -> None:
     """Draw the legs into which exact theory cuts a motion."""
     title = "A motion is cut into arcs, which turn back, and turns, which do not"
-    subtitle = (
-        "V is the potential, E the energy of the motion; s² is the angle from a turning point."
-    )
+    subtitle = "V is the potential and E the energy of the motion."
     with chart(HERE / "legs", 1, 2, 9, 4.3, title, subtitle) as (swing, slope):
         draw_swing(swing)
         draw_slope(slope)
