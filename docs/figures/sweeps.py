@@ -162,8 +162,8 @@ def draw_damping(duration: float = 4.0) -> None:
     borders = [bisect(beyond, *ends, (damping,), xtol=near) for damping in shown]
     steady = math.degrees(frozen(can=metal).largest_incline())
     title = (
-        f"From {math.degrees(min(borders)):.0f}° to {math.degrees(max(borders)):.0f}° damping "
-        "decides whether beer is carried over the top"
+        f"On {math.degrees(min(borders)):.0f}° to {math.degrees(max(borders)):.0f}° damping "
+        "decides whether beer goes over the top"
     )
     subtitle = (
         f"half-full can of sheet metal, let go with its surface level, for {duration:g} s; "
