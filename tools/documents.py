@@ -352,6 +352,14 @@ def kinds() -> str:
     )
 
 
+def answer() -> str:
+    """Whether a run that is trusted was ever wrong."""
+    found = COUNTS["kinds"]["all"]
+    return prose(
+        f"A random search trusted {trusted(found):,} of {ended(found):,} runs, and {wrong_of(found)}."
+    )
+
+
 def honesty() -> str:
     """How many runs were silent, and what that allows.
 
@@ -561,7 +569,7 @@ def engine_versions() -> str:
 
 _OF_THE_PAPER = (holds, misprints)
 _OF_THE_BENCHMARK = (others, whole_calls, ranges, measured, long_run, contact)
-_OF_STABILITY = (steps, agreement, damped_runs, kinds, honesty)
+_OF_STABILITY = (answer, steps, agreement, damped_runs, kinds, honesty)
 _OF_REAL_BEER = (swings, speeds, metre)
 _OF_ENGINES = (
     engines,
