@@ -356,7 +356,8 @@ def answer() -> str:
     """Whether a run that is trusted was ever wrong."""
     found = COUNTS["kinds"]["all"]
     return prose(
-        f"A random search trusted {trusted(found):,} of {ended(found):,} runs, and {wrong_of(found)}."
+        f"A random search trusted {trusted(found):,} of {ended(found):,} runs, and "
+        f"{wrong_of(found)}."
     )
 
 
