@@ -4,6 +4,7 @@ and the scenes."""
 import math
 import re
 import warnings
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from scipy.integrate import solve_bvp
 from scipy.optimize import brentq
 
 from mjbeer import Can, LiquidWarning, Load, Scene, exact, liquid, sliding
+from mjbeer.exceptions import NoEquilibriumError, ParameterError
 from mjbeer.theory import slosh
 from mjbeer.theory.equations import accelerations, resting_tilt, slip_rate_of
 from mjbeer.theory.liquid import liquid_in, lump_warning
@@ -260,6 +262,44 @@ def test_a_liquid_that_is_no_lump_at_its_terminal_speed_warns_once(name: str) ->
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         liquid(name, incline=0.0)
+
+
+@pytest.mark.parametrize(("fill", "degrees"), [(0.5, 60), (0.75, 10), (0.995, 10)])
+def test_an_incline_too_steep_to_hold_a_liquid_is_told(fill: float, degrees: float) -> None:
+    """There is no terminal speed then, at which the other reasons are looked for."""
+    reason = "the incline is too steep to hold it, and the can carries it round"
+    message = f"^water as one lump is an order of magnitude only: {reason}$"
+    with pytest.warns(LiquidWarning, match=message):
+        scene = liquid("water", math.radians(degrees), fill)
+    with pytest.raises(NoEquilibriumError):
+        scene.terminal_speed()
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"fill": 1.0}, r"a full can has no free surface: fill must be less than 1, got 1\.0$"),
+        (
+            {"gravity": 0},
+            r"without gravity a liquid does not slosh.* must be more than 0 \[m/s\^2\], got 0$",
+        ),
+        (
+            {"viscosity": 1e-9},
+            r"turbulent, with a Reynolds number of 4\.4e\+09 where 1e\+06 is the limit: .* 1e-09 m",
+        ),
+    ],
+)
+def test_what_is_no_liquid_of_ours_is_refused(given: dict[str, Any], message: str) -> None:
+    with pytest.raises(ParameterError, match=message):
+        liquid("water", **given)
+
+
+def test_a_liquid_says_what_damps_it() -> None:
+    rolls = "damped by thin layers at a slip rate of 128 rad/s"
+    assert str(liquid_in("water")) == f"water: 998.2 kg/m^3, 1e-06 m^2/s, sloshes, {rolls}"
+    on_level_ground = str(liquid_in("honey", 0.0))
+    assert on_level_ground.endswith("swings as ice, damped by creep")
+    assert str(liquid_in("water", 0.0)).endswith("sloshes, damped by swinging")
 
 
 def test_a_run_says_when_its_liquid_is_no_lump_any_more() -> None:

@@ -96,7 +96,7 @@ class Standing:
             raise ParameterError(f"{allowed}: a full can has no free surface, got {fill!r}")
         depth = fill * can.length / can.radius
         # In thinner films viscosity is everywhere.
-        require.within("height of the liquid over the radius", depth, 0.05, 50.0)
+        require.within("height of the liquid divided by the radius", depth, 0.05, 50.0)
         damping_ratio = self.damping_ratio
         if damping_ratio is not None:
             damping_ratio = require.within("damping_ratio", damping_ratio, 0, 1)
