@@ -25,8 +25,9 @@ LENGTH = 1.0
 _GENTLE = math.radians(5)
 """Incline of the race of beer [rad], on which the frozen can stays on the board."""
 _STEEPER = math.radians(7.1)
-"""Incline of the race of liquids [rad]: let go with a level surface, ice rolls over the top from
-6.93 degrees on, and honey, the thickest of the liquids, from 7.38."""
+"""Incline of the race of liquids [rad].
+
+Let go with a level surface, ice rolls over the top from 6.93 degrees on, and honey from 7.38."""
 _FILL = 0.75
 """How full the cans are that are neither full nor empty."""
 _ICE = 917.0
@@ -152,8 +153,8 @@ FILMS: dict[str, Film] = {
         "honey is last: when the ice arrives it has come 15 cm, and it needs 21.47 s. It neither "
         "slides freely nor turns with its can, and as it rubs it takes all that the incline gives: "
         "it creeps with 4.5 cm/s. Each liquid is one lump here, and the times are this model's: "
-        "real water and oil are soon so fast that they need not stay at the bottom, and of real "
-        "honey the wall carries up to 30 % round with it. With half or twice the viscosity honey "
+        "real water and oil are soon so fast that they need not stay at the bottom, and while real "
+        "honey creeps, the wall can carry 30 % of it round. With half or twice the viscosity honey "
         "is last as well.",
     ),
     "sliding": MotionFilm(
