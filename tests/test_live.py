@@ -19,7 +19,7 @@ from mjbeer.theory import can, slosh
 from mjbeer.theory.equations import resting_tilt, slip_rate_of
 from mjbeer.theory.liquid import liquid_in
 from mjbeer.theory.liquid_properties import LIQUIDS
-from mjbeer.theory.liquid_swing import LEAST_SHARE, ONE_MODE, THICKEST_LAYER
+from mjbeer.theory.liquid_swing import ONE_MODE, THICKEST_LAYER
 from mjbeer.theory.scene import GRAVITY
 from mjbeer.tracks.track import _COLUMNS, _COMMA, _GROUPED, _POINT, _TITLE
 from tests.support.tables import TABLES, THOUSANDS, UNCLEAR
@@ -138,12 +138,12 @@ def test_an_empty_can_speeds_up_evenly() -> None:
 
 
 def test_its_constants_are_those_of_theory() -> None:
-    names = "[LIQUIDS, LENGTH, GRAVITY, BEER, FILLS, THICKEST_LAYER, LEAST_SHARE, ONE_MODE]"
+    names = "[LIQUIDS, LENGTH, GRAVITY, BEER, FILLS, THICKEST_LAYER, ONE_MODE]"
     liquids, length, gravity, beer, fills, *limits = script(names)
     assert liquids == {name: properties._asdict() for name, properties in LIQUIDS.items()}
     assert [length, gravity, beer] == [can.LENGTH, GRAVITY, can.BEER]
     assert tuple(fills) == slosh.FILLS
-    assert limits == [THICKEST_LAYER, LEAST_SHARE, ONE_MODE]
+    assert limits == [THICKEST_LAYER, ONE_MODE]
     assert script("LARGEST_TILT") == slosh.LARGEST_TILT
 
 

@@ -69,7 +69,8 @@ def liquid(
     A thin liquid sloshes, as water, beer and olive oil do: its load is that of `Load.liquid`. It is
     that of `Load.segment`, with the inertia of ice, if the liquid is thick, as glycerol and honey
     are; if the fill is not between 0.01 and 0.99; if the incline is too steep to hold the liquid,
-    which then is carried round; or if the slosh is mainly in other modes than the slowest.
+    which then is carried round; or if ice swings faster than the slowest mode, which in a puddle in
+    a light can has next to none of the energy.
 
     `name` is "water", "beer", "olive oil", "glycerol" or "honey", at 20 degrees Celsius; `density`
     [kg/m^3] and kinematic `viscosity` [m^2/s] replace its own. `incline` is in [rad], `fill` is

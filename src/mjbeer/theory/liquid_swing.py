@@ -20,13 +20,13 @@ THICKEST_LAYER = 0.1
 Half full it is 0.006 for water, 0.05 for olive oil, 0.19 for glycerol and 0.46 for honey, whose
 layers fill the can. At the limit a swing in a half-full can loses half of its amplitude in about
 one period: there slosh dies."""
-LEAST_SHARE = 0.5
-"""Least share that the slowest mode of a liquid that sloshes has of the energy of a flat tilt.
-
-Below, other modes are most of the motion. In a shallow puddle in a light can they swing about as
-fast as ice, and the slowest mode at half of that."""
 ONE_MODE = 0.8
-"""Share of the slowest mode below which it is not the motion."""
+"""Share that the slowest mode has of the energy of a flat tilt, below which it is not the motion.
+
+In a shallow puddle in a light can, the share is next to 0: other modes are most of the motion, and
+swing about as fast as ice, the slowest mode at half of that. So the load of a puddle has the
+inertia of ice where ice swings faster than the slowest mode. Either load is the better one there
+over the first swings, and at the fill where they change places both have the same inertia."""
 
 
 class Swing(NamedTuple):
@@ -61,9 +61,12 @@ def swing_of(ice: Scene, properties: Properties) -> Swing:
     if layer > THICKEST_LAYER:
         reason = f"its layers are {layer:.2g} radii thick, and slosh has {THICKEST_LAYER:g} at most"
         return _swing_of_ice(ice, properties, reason)
-    share = float(modes.energy_shares[0])
-    if share < LEAST_SHARE:
-        reason = f"the slowest mode of its slosh has only {100 * share:.0f} % of the energy"
+    if modes.axis_inertia * ice.load.mass * ice.can.radius**2 > ice.load.axis_inertia:
+        share = float(modes.energy_shares[0])
+        reason = (
+            "ice swings faster than the slowest mode of its slosh, which has only "
+            f"{100 * share:.0f} % of the energy"
+        )
         return _swing_of_ice(ice, properties, reason)._replace(share=share)
     return _swing_of_slosh(ice, properties, modes)
 
