@@ -65,16 +65,21 @@ def of_beer() -> Sequence[Runner]:
             "beer slides",
             _race(slides, 30),
             colour=(0.75, 0.38, 0.0),
-            note="¾ full, starts at φ = 30°",
+            note="¾ full, from φ = 30°",
         ),
         Runner(
             "beer frozen",
             _race(is_frozen, 180),
             colour=(0.15, 0.42, 0.72),
-            note="¾ full, starts upside down",
+            note="¾ full, upside down",
         ),
         Runner("beer frozen, full", _race(is_full, 0), colour=(0.40, 0.25, 0.60)),
-        Runner("empty", _race(is_empty, 0), colour=(0.30, 0.33, 0.37)),
+        Runner(
+            "empty",
+            _race(is_empty, 0),
+            colour=(0.30, 0.33, 0.37),
+            load=(0.45, 0.46, 0.47),  # as the inside of the can, to be no more seen than it weighs
+        ),
     ]
 
 
@@ -175,6 +180,7 @@ FILMS: dict[str, Film] = {
             "Frozen beer rolls down in jerks",
             strips=("normal", "u"),
             marks=("paths", "normal", "friction"),
+            camera="pan",
             notes=("heavy", "light"),
         ),
     ),
