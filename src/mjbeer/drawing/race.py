@@ -203,7 +203,7 @@ class Race(Film):
         points = np.reshape(outlines, (-1, 3))
         distance = _EYE_DISTANCE * self.length * scale(display.scenes[0])
         eye = points.mean(axis=0) + distance * _EYE
-        return View.towards(eye, points, pixels, top, margin=0.01)
+        return View.towards(eye, points, pixels, top, margin=0.03)
 
     def _words(self, display: Display) -> str:
         """Return what holds for all cans."""
