@@ -23,13 +23,18 @@ from mjbeer.paper.claim import APPROXIMATION, CONSEQUENCE, MISPRINT
 from mjbeer.studies import contact_creep, polygon, predictions, stored_tables
 from mjbeer.studies.benchmark import benchmark_tables
 from mjbeer.studies.benchmark.benchmark_tables import RK4
-from mjbeer.studies.benchmark.other_tools import COMPILED_DOP853, HEYOKA, ODEINT
+from mjbeer.studies.benchmark.other_tools import (
+    COMPILED_DOP853,
+    COMPILED_ODEINT,
+    HEYOKA,
+    ODEINT,
+)
 from mjbeer.studies.benchmark.points import SHIPPED, Benchmark
 from mjbeer.studies.engines import engine_plot, engine_tables, findings
 from mjbeer.studies.engines.results import Results
 from mjbeer.studies.stability import stability_maps, stability_study
 from mjbeer.studies.stability.judge import (
-    BOTH,
+    JUDGES,
     NOBODY,
     REFUSED,
     RIGHT,
@@ -72,6 +77,10 @@ GENTLE = math.radians(2)
 """The incline [rad] of estimates for a real can."""
 USUAL = math.radians(10)
 """The incline [rad] of the examples."""
+_CYLINDER = (2.119, 1.835)
+"""Times of an empty and of a filled cylinder [s]: physics.stackexchange.com, question 334250."""
+_SOUPS = (2.21, 2.65)
+"""Times of broth and cream of mushroom [s]: "Soup Can Lab", scribd.com, document 450335766."""
 
 
 def anew(text: str) -> str:
@@ -116,29 +125,29 @@ def holds() -> str:
             (
                 "**accuracy**",
                 f"{len(checks())} checks, nearly all against exact theory, each with a bound and "
-                "its reason: at best, periods to 1e-12 and trajectories to 1e-10 rad "
+                "its reason; at best, periods agree to 1e-12 and trajectories to 1e-10 rad "
                 "([validation](docs/validation.md))",
             ),
             (
                 "**run time**",
-                f"on the same reduced model MuJoCo's RK4 takes {ratio(RK4, 1e-3)} times as long as "
+                f"on the same model MuJoCo's RK4 takes {ratio(RK4, 1e-3)} times as long as "
                 f"mjbeer's best setting for an error of 1e-3 rad, and {ratio(RK4, 1e-6)} times for "
-                f"1e-6 rad; without MuJoCo, compiled equations that were derived by hand take "
-                f"{ratio(COMPILED_DOP853, 1e-6)} times as long with DOP853 and "
-                f"{ratio(HEYOKA, 1e-6)} times with heyoka, for 1e-6 rad "
-                "([error against run time](docs/benchmark.md))",
+                f"1e-6 rad; compiled equations without MuJoCo take {ratio(COMPILED_DOP853, 1e-6)} "
+                f"times as long with DOP853, and {ratio(HEYOKA, 1e-6)} times with heyoka, for "
+                "1e-6 rad ([error against run time](docs/benchmark.md))",
             ),
             (
                 "**stability**",
-                f"in gravity the longest stable timesteps are within {border_error():.2g} % of "
+                f"the longest stable timestep of a swing is within {border_error():.2g} % of "
                 f"linear theory; {trusted(random):,} of {ended(random):,} new random runs were "
-                f"trusted, and {wrong_of(random)}; {random.get(stability_study.NEEDLESS, 0):,} "
-                f"others were doubted although they were right, and {alone(random):,} were judged "
-                "by one theory alone ([stability](docs/stability.md))",
+                f"trusted, and {wrong_of(random)}{at_most(random)}; "
+                f"{random.get(stability_study.NEEDLESS, 0):,} others were doubted although they "
+                f"were right; {alone(random):,} had one independent check instead of two "
+                "([stability](docs/stability.md))",
             ),
             (
                 "**the paper**",
-                f"its 61 equations are audited in {len(paper.claims())} rows; "
+                f"an audit of its 61 equations has {len(paper.claims())} rows; "
                 f"{sum(wrong.values())} hold only after a correction: {wrong[MISPRINT]} misprints, "
                 f"{wrong[CONSEQUENCE]} consequences of one, and {wrong[APPROXIMATION]} "
                 "approximations that leave out too much ([the physics](docs/physics.md))",
@@ -166,33 +175,66 @@ def misprints() -> str:
     return table(("equation", "what is wrong in it", "its error"), lines, left=(0, 1))
 
 
-def some(shown: Table) -> str:
+def some(shown: Table, left_out: Sequence[str] = LEFT_OUT) -> Table:
     """Return a table without the rows that say little more than their neighbours."""
-    kept = [row for row in shown.rows if not any(name in row[0] for name in LEFT_OUT)]
-    return table(shown.columns, kept)
+    kept = [row for row in shown.rows if not any(name in row[0] for name in left_out)]
+    return Table(shown.title, shown.columns, kept, shown.left)
+
+
+def without_columns(shown: Table, left_out: Sequence[str]) -> Table:
+    """Return a table without the columns of these names."""
+    kept = [at for at, name in enumerate(shown.columns) if name not in left_out]
+    return Table(
+        shown.title,
+        tuple(shown.columns[at] for at in kept),
+        [tuple(row[at] for at in kept) for row in shown.rows],
+        shown.left,
+    )
 
 
 def others() -> str:
-    """Run times of other tools at equal error."""
-    return some(benchmark_tables.ratios(BENCHMARK, benchmark_tables.COMPARED))
+    """Run times of other tools at equal error, and how much they scatter.
+
+    Interpreted and compiled equations take odeint about as long, so that one column has both.
+    """
+    ratios = benchmark_tables.ratios(BENCHMARK, benchmark_tables.COMPARED)
+    shown = without_columns(some(ratios), [COMPILED_ODEINT])
+    # A ratio is followed by its range in brackets.
+    rows = [(row[0], row[1], *(cell.partition(" (")[0] for cell in row[2:])) for row in shown.rows]
+    return f"{table(shown.columns, rows).rstrip()}\n\n{scatter()}"
+
+
+def scatter() -> str:
+    """How far ratios of single rounds are from those of the least times."""
+    relative = []
+    for case in BENCHMARK.cases:
+        for name in benchmark_tables.OTHERS:
+            for error in benchmark_tables.COMPARED:
+                found = benchmark_tables.time_ratio(BENCHMARK, case, name, error)
+                if found is not None:
+                    relative += [found.smallest / found.of_least, found.largest / found.of_least]
+    return prose(
+        f"The ratios are of the least times of five rounds. In single rounds they were "
+        f"{min(relative):.2g} to {max(relative):.2g} times as large."
+    )
 
 
 def whole_calls() -> str:
     """Times of whole calls."""
-    return some(benchmark_tables.whole_calls(BENCHMARK))
+    return plain(some(benchmark_tables.whole_calls(BENCHMARK), (*LEFT_OUT, "1e-03")))
 
 
 def long_run() -> str:
     """Errors and drifts of a motion of 1,000 s."""
     (case,) = BENCHMARK.long_cases
-    shown = benchmark_tables.drift(BENCHMARK, case)
-    return table(shown.columns, shown.rows)
+    left_out = ("RK4 4 ms", "DOP853 16 ms", "to 1e-06", "compiled equations to 1e-09")
+    return plain(some(benchmark_tables.drift(BENCHMARK, case), left_out))
 
 
 def contact() -> str:
-    """Errors of a contact by timestep."""
+    """Errors of a contact, at every other timestep."""
     shown = benchmark_tables.convergence(BENCHMARK, "frozen")
-    return table(shown.columns[:4], [row[:4] for row in shown.rows])
+    return table(shown.columns[:4], [row[:4] for row in shown.rows[1::2]])
 
 
 def measured() -> str:
@@ -202,8 +244,8 @@ def measured() -> str:
     used = [f"Python {machine['python']}"]
     used += [f"{name} {versions[key]}" for key, name in PEERS.items()]
     return prose(
-        f"It was measured in November 2026 on {machine['cores']} cores of an "
-        f"{machine['processor']}, of which a run uses one, with {', '.join(used)}."
+        "The stored study was measured in November 2026 on a machine with "
+        f"{machine['cores']} cores of an {machine['processor']}, with {', '.join(used)}."
     )
 
 
@@ -213,13 +255,13 @@ def ranges() -> str:
     return prose(
         f"On the same model MuJoCo's RK4 takes {ratio(RK4, 1e-3)} times as long as mjbeer's best "
         f"setting for an error of 1e-3 rad, and {ratio(RK4, 1e-6)} times for 1e-6 rad. "
-        f"For 1e-11 rad it takes {ratio(RK4, finest)} times as long; that is what order 4 costs "
-        "against order 13, and matters to nobody who needs three digits. "
-        "Without MuJoCo, DOP853 on compiled equations takes "
-        f"{ratio(COMPILED_DOP853, 1e-3)} times as long as mjbeer's best setting for 1e-3 rad, "
-        f"and {ratio(COMPILED_DOP853, 1e-6)} times for 1e-6 rad; "
-        f"heyoka takes {ratio(HEYOKA, 1e-3)} and {ratio(HEYOKA, 1e-6)} times as long; "
-        f"SciPy's odeint takes {ratio(ODEINT, 1e-3)} and {ratio(ODEINT, 1e-6)} times."
+        f"For 1e-11 rad it takes {ratio(RK4, finest)} times as long, because it has order 4 and "
+        "Gauss-Jackson order 13. "
+        f"Of the tools without MuJoCo, heyoka takes {ratio(HEYOKA, 1e-3)} times as long as "
+        f"mjbeer's best setting for 1e-3 rad, and {ratio(HEYOKA, 1e-6)} times for 1e-6 rad; "
+        f"DOP853 on compiled equations takes {ratio(COMPILED_DOP853, 1e-3)} and "
+        f"{ratio(COMPILED_DOP853, 1e-6)} times as long; "
+        f"SciPy's odeint takes {ratio(ODEINT, 1e-3)} and {ratio(ODEINT, 1e-6)} times as long."
     )
 
 
@@ -298,27 +340,6 @@ def border_error() -> float:
     return 100 * worst
 
 
-def damped() -> str:
-    """How damped runs of a millisecond a step end, by damping."""
-    words = ("explodes", "inaccurate", "accurate")
-    dampings = (0.01, 0.1, 1.0)
-    lines = []
-    for drawn in MAPS:
-        if drawn.family != "damping":
-            continue
-        column = nearest(drawn.timesteps, 1e-3)
-        rows_shown = [drawn.measured[nearest(drawn.values, damping)] for damping in dampings]
-        lines.append((drawn.integrator, *(words[int(row[column])] for row in rows_shown)))
-    columns = ("1 ms", *(f"{damping:g} N m s" for damping in dampings))
-    return table(columns, lines, left=(0, 1, 2, 3))
-
-
-def nearest(values: Sequence[float], wanted: float) -> int:
-    """Return the index of the value whose ratio to another one is nearest to 1."""
-    distances = [abs(math.log(value / wanted)) for value in values]
-    return distances.index(min(distances))
-
-
 def damped_runs() -> str:
     """How the runs in the maps of damping ended."""
     maps = [drawn for drawn in MAPS if drawn.family == "damping"]
@@ -344,30 +365,44 @@ def trusted(count: dict[str, int]) -> int:
 
 
 def wrong_of(count: dict[str, int]) -> str:
-    """Return how many of the trusted runs were wrong, and how many may be."""
+    """Return how many of the trusted runs were wrong."""
+    wrong = count.get(UNDETECTED_ERROR, 0)
+    return f"{wrong or 'none'} of these {'was' if wrong < 2 else 'were'} wrong"
+
+
+def at_most(count: dict[str, int]) -> str:
+    """Return how many of the trusted runs may be wrong, in parentheses."""
     share = stability_study.bound(count)
-    found = f"{count.get(UNDETECTED_ERROR, 0)} of these were wrong"
     if share is None:
-        return found
+        return ""
     percent = stability_study.rounded_up(100 * share)
-    return f"{found} (with 95 % confidence at most {percent} % of trusted runs are)"
+    return f" (with 95 % confidence at most {percent} % of trusted runs are)"
 
 
 def alone(count: dict[str, int]) -> int:
-    """Return the number of runs that one theory alone judged."""
+    """Return the number of runs that had one independent check."""
     return sum(count.get(judge, 0) for judge in (THEORY, SERIES))
 
 
 def kinds() -> str:
-    """How the random runs ended, by kind of model, and what judged them."""
+    """How the random runs ended, by kind of model."""
     counted = stability_study.Totals(COUNTS["known"], COUNTS["kinds"])
     tables = stability_study.search_tables(counted)
     (shown,) = [found for found in tables if "by model" in found.title]
-    left_out = (NOBODY, BOTH, SERIES, stability_study.ABOVE, stability_study.TWICE)
+    left_out = (*JUDGES, stability_study.ABOVE, stability_study.TWICE)
     columns = [at for at, name in enumerate(shown.columns) if name not in left_out]
     return table(
         tuple(shown.columns[at] for at in columns),
         [tuple(row[at] for at in columns) for row in shown.rows],
+    )
+
+
+def answer() -> str:
+    """Whether a run that is trusted was ever wrong."""
+    found = COUNTS["kinds"]["all"]
+    return prose(
+        f"A random search trusted {trusted(found):,} of {ended(found):,} runs, and "
+        f"{wrong_of(found)}."
     )
 
 
@@ -385,17 +420,19 @@ def honesty() -> str:
     outside = ended(COUNTS["kinds"].get(stability_study.OUTSIDE, {}))
     refused = f"{found.get(REFUSED, 0):,} were refused"
     if outside:
-        refused += f", {outside:,} of them because they are outside the domain"
+        refused += f", {outside:,} of these because they are outside the domain"
+    checked = trusted(found) + found.get(WARNED, 0)
     return prose(
-        f"{ended(found):,} random runs, with the numbers from {first} on, ended like this: "
-        f"{trusted(found):,} were trusted, and {wrong_of(found)}. "
-        f"{found.get(WARNED, 0):,} were doubted, {needless:,} of them although their samples were "
-        f"right, and {refused}. "
-        f"{alone(found):,} were judged by one theory alone, and {found.get(NOBODY, 0)} by none. "
-        f"{above} of the trusted runs had an error above its estimate, {twice} of them above twice "
-        "the estimate. "
+        f"{ended(found):,} random runs, numbered from {first} on, ended as follows. "
+        f"{trusted(found):,} were trusted, and {wrong_of(found)}{at_most(found)}. "
+        f"{found.get(WARNED, 0):,} were doubted, although {needless:,} of these were right. "
+        f"{refused}. "
+        f"Of the {checked:,} runs that were not refused, {alone(found):,} had one independent "
+        f"check and {found.get(NOBODY, 0)} had none; the rest had two. "
+        f"The error of {above} trusted runs was larger than their own estimate, and that of "
+        f"{twice or 'none'} more than twice as large. "
         f"Of {ended(known):,} runs of known cases {trusted(known):,} were trusted, and "
-        f"{known.get(UNDETECTED_ERROR, 0)} of these were wrong."
+        f"{wrong_of(known)}."
     )
 
 
@@ -406,11 +443,11 @@ def swings() -> str:
     """
     columns = (
         "fill",
-        "no mass: paper [Hz]",
-        "no mass: liquid [Hz]",
-        "12-oz can: paper [Hz]",
+        "massless: solid [Hz]",
+        "massless: liquid [Hz]",
+        "12-oz can: solid [Hz]",
         "12-oz can: liquid [Hz]",
-        "share of the energy",
+        "energy in this mode",
         "amplitude halved after",
     )
     lines = []
@@ -439,13 +476,12 @@ def speeds() -> str:
     They are in brackets where the model does not hold.
     """
     columns = (
-        "at 20 °C",
-        "density [kg/m³]",
+        "liquid",
         "ν [m²/s]",
         "at 2° [m/s]",
         "at 10° [m/s]",
         "Reynolds number",
-        "at the wall [g]",
+        "centrifugal [g]",
         "film could hold",
     )
     lines = []
@@ -456,7 +492,6 @@ def speeds() -> str:
         speed = scene.terminal_speed()
         cells = (
             name,
-            f"{LIQUIDS[name].density:.4g}",
             f"{LIQUIDS[name].viscosity:.2g}",
             terminal_speed(name, GENTLE),
             terminal_speed(name, USUAL),
@@ -491,7 +526,6 @@ def metre() -> str:
         "no friction",
         "friction",
         "friction doubled to halved",
-        "with air",
         "model holds for",
     )
     lines = []
@@ -502,7 +536,6 @@ def metre() -> str:
         usual = with_water(volume)
         halved = with_water(volume, friction=1 / real_beer.SPREAD)
         doubled = with_water(volume, friction=real_beer.SPREAD)
-        in_air = with_water(volume, drag=real_beer.DRAG)
         until = real_beer.lump_until(usual)
         cells = (
             f"{volume:g}",
@@ -511,16 +544,57 @@ def metre() -> str:
             f"{real_beer.over_first_metre(usual):.2f}",
             f"{real_beer.over_first_metre(doubled):.2f} to "
             f"{real_beer.over_first_metre(halved):.2f}",
-            f"{real_beer.over_first_metre(in_air):.2f}",
             "the whole metre" if until > 1 else f"{until:.1f} m",
         )
         lines.append(cells)
     return table(columns, lines)
 
 
-def with_water(volume: float, friction: float = 1.0, drag: float = 0.0) -> Trajectory:
+def measured_by_others() -> str:
+    """How the times of rolling cylinders compare, as others measured them and by theory."""
+    down = frozen(USUAL).gravity * math.sin(USUAL)
+    solid = frozen(USUAL, 1.0).acceleration()
+
+    empty = 0.073  # [kg]
+    heaviest = 2.278
+    wall = Can.hoop(mass=empty)
+    contents = (heaviest - empty) / (math.pi * wall.radius**2 * wall.length)
+    turning = frozen(USUAL, 1.0, wall, contents).acceleration()
+    not_turning = sliding(USUAL, 1.0, wall, contents).acceleration()
+    shell = down / 2
+
+    tin = Can.hoop(mass=sliding(USUAL, 1.0).mass / 9)  # a tenth of the whole
+    cream_in_tin = frozen(USUAL, 1.0, tin).acceleration()
+    broth_in_tin = sliding(USUAL, 1.0, tin).acceleration()
+
+    cylinder = f"**a cylinder of {empty:g} kg, {_CYLINDER[0]:.3f} s, and of {heaviest:g} kg, "
+    soups = f"**broth, {_SOUPS[0]:.2f} s, and cream of mushroom, {_SOUPS[1]:.2f} s**"
+    lines = [
+        (f"{cylinder}{_CYLINDER[1]:.3f} s**", f"**{quotient(*_CYLINDER)}**"),
+        ("a thin shell, and a solid cylinder without a wall", time_ratio(shell, solid)),
+        ("a thin wall of 0.073 kg, and what is inside turns with it", time_ratio(shell, turning)),
+        ("the same, and what is inside does not turn", time_ratio(shell, not_turning)),
+        (soups, f"**{quotient(*_SOUPS)}**"),
+        ("the broth does not turn, the cream does; cans without mass", time_ratio(down, solid)),
+        ("the same; cans of a tenth of the mass", time_ratio(broth_in_tin, cream_in_tin)),
+        ("both turn with their cans", time_ratio(solid, solid)),
+    ]
+    return table(("**measured**, and by theory", "ratio of the times"), lines)
+
+
+def quotient(first: float, second: float) -> str:
+    """Return the ratio of two times as text."""
+    return f"{first / second:.3f}"
+
+
+def time_ratio(first: float, second: float) -> str:
+    """Return the ratio of the times that two accelerations take for one distance, as text."""
+    return f"{math.sqrt(second / first):.3f}"
+
+
+def with_water(volume: float, friction: float = 1.0) -> Trajectory:
     """Return the first metre of a can with a `volume` [mL] of water on the gentle incline."""
-    scene = real_beer.water_in(volume, GENTLE, friction, drag)
+    scene = real_beer.water_in(volume, GENTLE, friction)
     with warnings.catch_warnings(action="ignore", category=LiquidWarning):
         return real_beer.let_go(scene, real_beer.times_of(scene))
 
@@ -583,7 +657,7 @@ def engine_versions() -> str:
 
 _OF_THE_PAPER = (holds, misprints)
 _OF_THE_BENCHMARK = (others, whole_calls, ranges, measured, long_run, contact)
-_OF_STABILITY = (steps, agreement, damped, damped_runs, kinds, honesty)
+_OF_STABILITY = (answer, steps, agreement, damped_runs, kinds, honesty)
 _OF_REAL_BEER = (swings, speeds, metre)
 _OF_ENGINES = (
     engines,
@@ -604,6 +678,7 @@ _ALL = (
     *_OF_THE_BENCHMARK,
     *_OF_STABILITY,
     *_OF_REAL_BEER,
+    measured_by_others,
     *_OF_ENGINES,
 )
 MADE = {made.__name__.replace("_", "-"): made for made in _ALL}

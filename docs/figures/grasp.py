@@ -10,7 +10,7 @@ import mjbeer
 from mjbeer.output import files
 
 WIDTH, HEIGHT, FPS = 720, 450, 18
-"""Width and height [pixels] and pictures per second, as in renders.py."""
+"""Width and height [pixels] and pictures per second."""
 CHECKOUT = pathlib.Path(__file__).parents[2]
 
 
