@@ -60,7 +60,11 @@ import real_beer  # noqa: E402
 
 from tests.support import rows  # noqa: E402
 
-DOCUMENTS = [CHECKOUT / "README.md", *sorted(CHECKOUT.glob("docs/*.md"))]
+DOCUMENTS = [
+    CHECKOUT / "README.md",
+    *sorted(CHECKOUT.glob("docs/*.md")),
+    CHECKOUT / "engines" / "SETTINGS.md",
+]
 COUNTS = json.loads((CHECKOUT / "docs" / "stability.json").read_text(encoding="utf-8"))
 BENCHMARK = Benchmark.load(SHIPPED)
 MAPS = stability_maps.load().maps
@@ -596,12 +600,17 @@ def with_water(volume: float, friction: float = 1.0) -> Trajectory:
 
 
 def engines() -> str:
-    """The answer of the can test, in two sentences."""
+    """The answer of the can test, in some sentences."""
     return prose(findings.answer(ENGINES))
 
 
 def engine_errors() -> str:
-    """Errors of a can in physics engines."""
+    """Errors of a can in physics engines, at their defaults and at the closest setting."""
+    return plain(engine_tables.errors(ENGINES, engine_tables.main_ways(ENGINES)))
+
+
+def all_engine_errors() -> str:
+    """Errors with all shapes and settings."""
     return plain(engine_tables.errors(ENGINES))
 
 
@@ -653,6 +662,7 @@ _OF_REAL_BEER = (swings, speeds, metre)
 _OF_ENGINES = (
     engines,
     engine_errors,
+    all_engine_errors,
     engine_conservation,
     engine_tuning,
     engine_findings,

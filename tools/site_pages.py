@@ -22,7 +22,7 @@ PAGES = [
     *CHECKOUT.glob("*.md"),
     *sorted(CHECKOUT.glob("docs/*.md")),
     CHECKOUT / "mjcf/README.md",
-    CHECKOUT / "engines/README.md",
+    *sorted(CHECKOUT.glob("engines/*.md")),
 ]
 LINK = re.compile(r"\]\((?!\w+:|#)(?P<path>[^)#\s]+)")
 """A link to a file."""
