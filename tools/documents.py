@@ -60,7 +60,11 @@ import real_beer  # noqa: E402
 
 from tests.support import rows  # noqa: E402
 
-DOCUMENTS = [CHECKOUT / "README.md", *sorted(CHECKOUT.glob("docs/*.md"))]
+DOCUMENTS = [
+    CHECKOUT / "README.md",
+    *sorted(CHECKOUT.glob("docs/*.md")),
+    CHECKOUT / "engines" / "SETTINGS.md",
+]
 COUNTS = json.loads((CHECKOUT / "docs" / "stability.json").read_text(encoding="utf-8"))
 BENCHMARK = Benchmark.load(SHIPPED)
 MAPS = stability_maps.load().maps
@@ -73,6 +77,10 @@ GENTLE = math.radians(2)
 """The incline [rad] of estimates for a real can."""
 USUAL = math.radians(10)
 """The incline [rad] of the examples."""
+_CYLINDER = (2.119, 1.835)
+"""Times of an empty and of a filled cylinder [s]: physics.stackexchange.com, question 334250."""
+_SOUPS = (2.21, 2.65)
+"""Times of broth and cream of mushroom [s]: "Soup Can Lab", scribd.com, document 450335766."""
 
 
 def anew(text: str) -> str:
@@ -542,6 +550,48 @@ def metre() -> str:
     return table(columns, lines)
 
 
+def measured_by_others() -> str:
+    """How the times of rolling cylinders compare, as others measured them and by theory."""
+    down = frozen(USUAL).gravity * math.sin(USUAL)
+    solid = frozen(USUAL, 1.0).acceleration()
+
+    empty = 0.073  # [kg]
+    heaviest = 2.278
+    wall = Can.hoop(mass=empty)
+    contents = (heaviest - empty) / (math.pi * wall.radius**2 * wall.length)
+    turning = frozen(USUAL, 1.0, wall, contents).acceleration()
+    not_turning = sliding(USUAL, 1.0, wall, contents).acceleration()
+    shell = down / 2
+
+    tin = Can.hoop(mass=sliding(USUAL, 1.0).mass / 9)  # a tenth of the whole
+    cream_in_tin = frozen(USUAL, 1.0, tin).acceleration()
+    broth_in_tin = sliding(USUAL, 1.0, tin).acceleration()
+
+    cylinder = f"**a cylinder of {empty:g} kg, {_CYLINDER[0]:.3f} s, and of {heaviest:g} kg, "
+    soups = f"**broth, {_SOUPS[0]:.2f} s, and cream of mushroom, {_SOUPS[1]:.2f} s**"
+    lines = [
+        (f"{cylinder}{_CYLINDER[1]:.3f} s**", f"**{quotient(*_CYLINDER)}**"),
+        ("a thin shell, and a solid cylinder without a wall", time_ratio(shell, solid)),
+        ("a thin wall of 0.073 kg, and what is inside turns with it", time_ratio(shell, turning)),
+        ("the same, and what is inside does not turn", time_ratio(shell, not_turning)),
+        (soups, f"**{quotient(*_SOUPS)}**"),
+        ("the broth does not turn, the cream does; cans without mass", time_ratio(down, solid)),
+        ("the same; cans of a tenth of the mass", time_ratio(broth_in_tin, cream_in_tin)),
+        ("both turn with their cans", time_ratio(solid, solid)),
+    ]
+    return table(("**measured**, and by theory", "ratio of the times"), lines)
+
+
+def quotient(first: float, second: float) -> str:
+    """Return the ratio of two times as text."""
+    return f"{first / second:.3f}"
+
+
+def time_ratio(first: float, second: float) -> str:
+    """Return the ratio of the times that two accelerations take for one distance, as text."""
+    return f"{math.sqrt(second / first):.3f}"
+
+
 def with_water(volume: float, friction: float = 1.0) -> Trajectory:
     """Return the first metre of a can with a `volume` [mL] of water on the gentle incline."""
     scene = real_beer.water_in(volume, GENTLE, friction)
@@ -550,12 +600,17 @@ def with_water(volume: float, friction: float = 1.0) -> Trajectory:
 
 
 def engines() -> str:
-    """The answer of the can test, in two sentences."""
+    """The answer of the can test, in some sentences."""
     return prose(findings.answer(ENGINES))
 
 
 def engine_errors() -> str:
-    """Errors of a can in physics engines."""
+    """Errors of a can in physics engines, at their defaults and at the closest setting."""
+    return plain(engine_tables.errors(ENGINES, engine_tables.main_ways(ENGINES)))
+
+
+def all_engine_errors() -> str:
+    """Errors with all shapes and settings."""
     return plain(engine_tables.errors(ENGINES))
 
 
@@ -607,6 +662,7 @@ _OF_REAL_BEER = (swings, speeds, metre)
 _OF_ENGINES = (
     engines,
     engine_errors,
+    all_engine_errors,
     engine_conservation,
     engine_tuning,
     engine_findings,
@@ -622,6 +678,7 @@ _ALL = (
     *_OF_THE_BENCHMARK,
     *_OF_STABILITY,
     *_OF_REAL_BEER,
+    measured_by_others,
     *_OF_ENGINES,
 )
 MADE = {made.__name__.replace("_", "-"): made for made in _ALL}
