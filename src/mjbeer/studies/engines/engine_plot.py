@@ -9,8 +9,8 @@ from typing import NamedTuple
 from matplotlib.axes import Axes
 
 from mjbeer.output.plots import COLOURS, GREY, Picture, chart
-from mjbeer.studies.engines.engine_tables import order_cell
-from mjbeer.studies.engines.results import CASES, CurveKey, Results, Row, order_of
+from mjbeer.studies.engines.engine_tables import COARSE, order_cell
+from mjbeer.studies.engines.results import CASES, EQUATION, CurveKey, Results, Row, order_of
 
 
 class _Style(NamedTuple):
@@ -49,9 +49,8 @@ def draw(results: Results, path: pathlib.Path | Picture) -> None:
     Raises:
       OutputError: if a file cannot be written.
     """
-    title = "Error over run time of a can in physics engines"
     styles = dict(zip(_engines(results), itertools.cycle(_STYLES), strict=False))
-    with chart(path, len(CASES), 2, 13, 5.4 * len(CASES), title, _SUBTITLE) as panels:
+    with chart(path, len(CASES), 2, 13, 5.4 * len(CASES), _title(results), _SUBTITLE) as panels:
         places = itertools.product(CASES.values(), (False, True))
         for axes, (case, tuned) in zip(panels, places, strict=True):
             ends = {}
@@ -73,6 +72,20 @@ def draw(results: Results, path: pathlib.Path | Picture) -> None:
             axes.xaxis.set_major_formatter("{x:,g}")
             axes.minorticks_off()
             _name_ends(axes, ends, styles)
+
+
+def _title(results: Results) -> str:
+    """Return how far engines are off at their defaults: the larger error of all cases, at 1 ms."""
+    largest: dict[tuple[str, ...], float] = {}
+    for row in results.rows:
+        if row.engine != EQUATION and not row.tuned and row.timestep == COARSE:
+            way = row.key[1:]
+            largest[way] = max(row.error, largest.get(way, 0.0))
+    least = min(largest.values())
+    most = max(largest.values())
+    return (
+        f"At 1 ms and their defaults, engines roll a can {least:.1g} to {most:.2g} rad wrong in 2 s"
+    )
 
 
 def _engines(results: Results) -> list[str]:
