@@ -31,34 +31,40 @@ _SLOWEST = 4e4
 """The ends of the axis of processor time [ms]."""
 _LABELS = 1.02
 """Where the labels begin, in widths of a panel."""
-_APART = 0.038
+_APART = 0.06
 """Least distance of two labels, in heights of a panel."""
+_PALE = 0.3
+"""Opacity of the curves without a name."""
 _SUBTITLE = (
-    "Each point is one timestep: 4, 2, 1, 0.4 and 0.1 ms from left to right. Full markers: the "
-    "error falls with the timestep h as the label says. Open markers: it has a floor [rad] or no "
-    "power. SciPy is no engine, and has tolerances in place of timesteps; so has Drake's error "
-    "control. Errors below 1e-7 rad are left out."
+    "Each point is one timestep: 4, 2, 1, 0.4 and 0.1 ms from left to right. Each engine's closest "
+    "curve at 1 ms is named, and its other shapes and settings are pale. Full markers: the error "
+    "falls with the timestep h as the name says. Open markers: it has a floor [rad] or no power. "
+    "SciPy is no engine; it has tolerances in place of timesteps, as Drake's error control has. "
+    "Errors below 1e-7 rad are left out."
 )
 
 
 def draw(results: Results, path: pathlib.Path | Picture) -> None:
     """Draw all curves, and write them to `path` with .svg appended.
 
-    Each case has a panel for the engines' defaults, and one for settings that are tuned.
+    Each case has a panel for the engines' defaults, and one for settings that are tuned. In a
+    panel the closest curve of each engine is named.
 
     Raises:
       OutputError: if a file cannot be written.
     """
     styles = dict(zip(_engines(results), itertools.cycle(_STYLES), strict=False))
-    with chart(path, len(CASES), 2, 13, 5.4 * len(CASES), _title(results), _SUBTITLE) as panels:
+    with chart(path, len(CASES), 2, 11.5, 4.6 * len(CASES), _title(results), _SUBTITLE) as panels:
         places = itertools.product(CASES.values(), (False, True))
         for axes, (case, tuned) in zip(panels, places, strict=True):
-            ends = {}
+            curves = {}
             for key, rows in results.curves(case.name).items():
                 shown = [row for row in rows if _FLOOR < row.error < _CEILING and row.seconds]
                 if shown and shown[0].tuned == tuned:
-                    _draw_curve(axes, shown, styles[key.engine])
-                    ends[key] = shown
+                    curves[key] = shown
+            named = _closest(curves)
+            for key, shown in curves.items():
+                _draw_curve(axes, shown, styles[key.engine], pale=key not in named)
             settings = "tuned" if tuned else "at the engines' defaults"
             axes.set(
                 xscale="log",
@@ -71,7 +77,22 @@ def draw(results: Results, path: pathlib.Path | Picture) -> None:
             axes.set_ylabel("largest error of φ and u/a [rad]")
             axes.xaxis.set_major_formatter("{x:,g}")
             axes.minorticks_off()
-            _name_ends(axes, ends, styles)
+            _name_ends(axes, named, styles)
+
+
+def _closest(curves: dict[CurveKey, list[Row]]) -> dict[CurveKey, list[Row]]:
+    """Return the curve of each engine whose error at 1 ms is the least."""
+    closest: dict[str, CurveKey] = {}
+    for key, rows in curves.items():
+        best = closest.setdefault(key.engine, key)
+        if _error_at_coarse(rows) < _error_at_coarse(curves[best]):
+            closest[key.engine] = key
+    return {key: curves[key] for key in closest.values()}
+
+
+def _error_at_coarse(rows: Sequence[Row]) -> float:
+    """Return the error at 1 ms [rad], or infinity if it is not drawn."""
+    return next((row.error for row in rows if row.timestep == COARSE), math.inf)
 
 
 def _title(results: Results) -> str:
@@ -92,7 +113,7 @@ def _engines(results: Results) -> list[str]:
     return list(dict.fromkeys(row.engine for row in results.rows))
 
 
-def _draw_curve(axes: Axes, shown: Sequence[Row], style: _Style) -> None:
+def _draw_curve(axes: Axes, shown: Sequence[Row], style: _Style, pale: bool) -> None:
     order = order_of(shown)
     converges = order is not None and order.converges
     axes.plot(
@@ -102,19 +123,21 @@ def _draw_curve(axes: Axes, shown: Sequence[Row], style: _Style) -> None:
         marker=style.marker,
         color=style.colour,
         markerfacecolor=style.colour if converges else "white",
-        markersize=4.5,
-        linewidth=1.2,
+        markersize=3.5 if pale else 5.5,
+        linewidth=0.9 if pale else 1.6,
+        alpha=_PALE if pale else 1.0,
+        zorder=1 if pale else 2,
     )
 
 
 def _name_ends(axes: Axes, ends: dict[CurveKey, list[Row]], styles: dict[str, _Style]) -> None:
-    """Name the curves to the right of the panel, in the order of their ends."""
+    """Name curves to the right of the panel, in the order of their ends."""
     low, high = (math.log10(limit) for limit in axes.get_ylim())
     keys = sorted(ends, key=lambda key: ends[key][-1].error)
     heights = [(math.log10(ends[key][-1].error) - low) / (high - low) for key in keys]
     for key, height in zip(keys, spread(heights, _APART), strict=True):
         last = ends[key][-1]
-        words = ", ".join([*key[1:3], *([key.setting] if last.tuned else [])])
+        words = f"{key.engine}, {key.shape}"
         fall = order_cell(order_of(ends[key]))
         axes.annotate(
             f"{words}: {fall}" if fall else words,
@@ -122,7 +145,7 @@ def _name_ends(axes: Axes, ends: dict[CurveKey, list[Row]], styles: dict[str, _S
             xytext=(_LABELS, height),
             textcoords="axes fraction",
             color=styles[key.engine].colour,
-            fontsize=8.5,
+            fontsize=9.5,
             va="center",
             annotation_clip=False,
             arrowprops={
