@@ -115,12 +115,12 @@ def test_the_result_is_the_same_with_any_number_of_threads_and_in_any_pieces(
 
 
 @pytest.mark.slow
-def test_the_result_is_the_same_in_processes() -> None:
+def test_the_result_is_the_same_in_another_process() -> None:
     """That of a quantity with a name and of a function, too."""
     asked = {"fill": FILLS[:2], "quantity": ["period", highest]}
     here = sweep_of_sliding(**asked)
 
-    with jobs.pool(2) as processes:
+    with jobs.pool(1) as processes:
         there = sweep_of_sliding(**asked, executor=processes)
 
     assert there.identical(here)

@@ -86,6 +86,7 @@ def _steepest_incline() -> float:
     return float(brentq(largest_acceleration, 0.2, 0.8, xtol=1e-15))
 
 
+@cache
 def _least_friction() -> Observation:
     """Return the least friction coefficient `mu` with which the can stays for a second."""
     scene = frozen()
@@ -130,6 +131,7 @@ def _beside_theory() -> Observation:
     return Observation(**vars(observed), theory=exact(footnote_scene(), observed.time, math.pi).phi)
 
 
+@cache
 def _lift_off_time() -> Observation:
     """Return when a can that rolls down in contact lifts off [s].
 

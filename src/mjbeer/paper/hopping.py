@@ -6,7 +6,7 @@ is at the bottom.
 """
 
 import math
-from functools import partial
+from functools import cache, partial
 from types import SimpleNamespace
 from typing import Any
 
@@ -111,11 +111,13 @@ def takeoff(run: Run) -> float | None:
     return math.pi - float(run.phi[np.argmax(above)]) if above.any() else None
 
 
+@cache
 def _lifts_off() -> SimpleNamespace:
     """Return the angle from the top [rad] at which the hoop lifts off, simulated and by theory."""
     return SimpleNamespace(angle=takeoff(fall(RATIO, GRIP, 2e-5)), theory=lift_off(RATIO))
 
 
+@cache
 def _skids() -> SimpleNamespace:
     """Return the angle from the top [rad] at which the rim begins to slide, also by theory.
 
@@ -128,6 +130,7 @@ def _skids() -> SimpleNamespace:
     return SimpleNamespace(angle=angle, theory=slip(RATIO, MU))
 
 
+@cache
 def _height(rolling: Rolling) -> np.ndarray:
     """Return the height of the axis [radii] at each sample, for a hoop that starts with a push."""
     run = simulate(_hoop(RATIO), 0.3, -3.0, 16.0, rolling=rolling, timestep=1e-4, friction=GRIP)

@@ -20,10 +20,11 @@ CHECKS = {f"{check.name} - {check.by}": check for check in checks()}
 
 
 def params() -> list[Any]:
-    """Every check; the fits of six noisy tracks each take seconds."""
+    """Every check; the fits of six noisy tracks, and of ice with its fill, each take seconds."""
     marked = []
     for name, check in CHECKS.items():
-        mark = pytest.mark.costly if "standard errors" in name else pytest.mark.slow
+        takes_seconds = "standard errors" in name or "track - ice" in name
+        mark = pytest.mark.costly if takes_seconds else pytest.mark.slow
         marked.append(pytest.param(check, id=name, marks=mark))
     return marked
 

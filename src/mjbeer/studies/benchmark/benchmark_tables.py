@@ -125,8 +125,9 @@ def _comparison(
     rows = []
     for case in study.cases:
         best = _reduced(study, case)
+        others = [_of(study, case, name) for name in OTHERS]
         for error in errors:
-            cells = [cell(best, _of(study, case, name), error) for name in OTHERS]
+            cells = [cell(best, other, error) for other in others]
             rows.append((f"{case}, {error:.0e} rad", best_cell(best, error), *cells))
     return Table(title, ("error", "best reduced", *OTHERS), rows)
 
