@@ -149,7 +149,7 @@ class Section:
 
     @cached_property
     def _slopes(self) -> np.ndarray:
-        """Slopes of the functions on the boundary, at the nodes inside, and `APART` beside these."""
+        """Slopes of the functions on the boundary, at the nodes inside, and `APART` from these."""
         inside, _ = self._inside
         points = np.concatenate([self.boundary, inside, inside + APART, inside - APART])
         weights = np.append(self.weights, np.zeros(3 * len(inside)))
