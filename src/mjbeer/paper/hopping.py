@@ -27,7 +27,7 @@ TOP = math.pi - 0.05
 """Angle phi [rad] at which a hoop is let go: a little beside pi, where it would stay in balance."""
 
 
-def rate(ratio: float, phi: float | np.ndarray) -> Any:
+def rate_squared(ratio: float, phi: float | np.ndarray) -> Any:
     """Return phi_dot^2 a/g of a hoop that fell from rest at the top, phi = pi.
 
     Energy is conserved: (2 M + 4 m sin^2(phi/2)) a^2 phi_dot^2/2 = m g a (1 + cos(phi)).
@@ -36,13 +36,15 @@ def rate(ratio: float, phi: float | np.ndarray) -> Any:
 
 
 def acceleration(ratio: float, phi: float | np.ndarray) -> Any:
-    """Return phi_ddot a/g, which is half the derivative of `rate` by phi."""
+    """Return phi_ddot a/g, which is half the derivative of `rate_squared` by phi."""
     return -np.sin(phi) * (1 + ratio / 2) / (ratio + 2 * np.sin(phi / 2) ** 2) ** 2
 
 
 def normal(ratio: float, phi: float | np.ndarray) -> Any:
     """Return N/(m g) = 1 + M/m + (sin(phi) phi_ddot + cos(phi) phi_dot^2) a/g."""
-    return 1 + ratio + np.sin(phi) * acceleration(ratio, phi) + np.cos(phi) * rate(ratio, phi)
+    return (
+        1 + ratio + np.sin(phi) * acceleration(ratio, phi) + np.cos(phi) * rate_squared(ratio, phi)
+    )
 
 
 def friction(ratio: float, phi: float | np.ndarray) -> Any:
@@ -51,7 +53,7 @@ def friction(ratio: float, phi: float | np.ndarray) -> Any:
     F/(m g) = -((1 + M/m) phi_ddot - cos(phi) phi_ddot + sin(phi) phi_dot^2) a/g.
     """
     turning = acceleration(ratio, phi)
-    return -((1 + ratio) * turning - np.cos(phi) * turning + np.sin(phi) * rate(ratio, phi))
+    return -((1 + ratio) * turning - np.cos(phi) * turning + np.sin(phi) * rate_squared(ratio, phi))
 
 
 def _least_normal(ratio: float) -> tuple[float, float]:

@@ -141,7 +141,7 @@ CLAIMS = (
     ),
     Claim(
         "(25)",
-        "amplitude of the ripple of u at 2 omega over that at omega: none; printed phi_0/2",
+        "amplitude of the ripple of u at 2 omega, divided by that at omega: none; printed phi_0/2",
         _HESITATES,
         Bound(1e-9, "rounding: sin(phi) swings alike to both sides"),
         residual="ripple[2]",
