@@ -17,7 +17,7 @@ from mjbeer import (
     sliding,
 )
 from mjbeer.cli.app import parse
-from mjbeer.cli.motions import trajectory_of
+from mjbeer.cli.motions import run_of
 from mjbeer.exceptions import (
     DivergenceError,
     ParameterError,
@@ -38,7 +38,7 @@ def test_a_run_starts_where_theory_starts_and_is_trusted(scene: Scene) -> None:
 
 def test_the_command_line_has_the_same_defaults() -> None:
     ours = simulate(sliding())
-    theirs = trajectory_of(parse(["simulate", "sliding"]))
+    theirs = run_of(parse(["simulate", "sliding"]))
     assert (ours.time[-1], ours.phi0) == (2.0, math.radians(60))
     # Degrees and back are a rounding of the start.
     assert theirs.phi == pytest.approx(ours.phi, abs=1e-14)
