@@ -44,6 +44,10 @@ def test_the_tutorial_runs_and_shows_plots_a_video_and_a_table(
         output.text for output in outputs if output.get("name") == "stderr"
     ]  # a warning that nobody explains
     assert "\ntrusted\n" in text
+    # "The error is the smaller one."
+    shown = re.search(r"error of phi (\S+) rad, estimated (\S+) rad", text)
+    assert shown
+    assert float(shown[1]) < float(shown[2])
     assert "this run is not to be relied on: " in text
     assert "the can slips by" in text
     assert "tolerance 1e-9 rad, error" in text

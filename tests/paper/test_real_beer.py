@@ -8,7 +8,7 @@ import warnings
 import mpmath
 import numpy as np
 import pytest
-from scipy.optimize import brentq
+from scipy.optimize import brentq, minimize_scalar
 
 from mjbeer import Can, LiquidWarning, Load, Scene, exact, liquid, simulate, sliding
 from mjbeer.theory import slosh
@@ -85,6 +85,19 @@ def test_the_first_fact_also_holds_where_the_wall_cannot_take_all_water() -> Non
         # The largest volume of the film, divided by a l [m].
         film = FILM_LOAD * math.sqrt(LIQUIDS["water"].viscosity * speed / GRAVITY)
         assert volume > 1e6 * film * CAN.radius * CAN.length
+
+
+def test_the_page_has_the_slowest_can_and_what_its_wall_can_hold() -> None:
+    """In millilitres, on the gentlest incline; the wall at the end of the metre."""
+    slowest = minimize_scalar(
+        lambda volume: first_metre(volume, INCLINES[0]), bounds=(0.7, 4), options={"xatol": 0.02}
+    )
+    assert slowest.x == pytest.approx(1.2, abs=0.1)
+    scene = water_in(slowest.x, INCLINES[0])
+    run = let_go(scene, times_of(scene))
+    speed = np.interp(1.0, run.u - run.u[0], run.u_dot)
+    film = FILM_LOAD * math.sqrt(LIQUIDS["water"].viscosity * speed / GRAVITY)
+    assert 1e6 * film * CAN.radius * CAN.length == pytest.approx(3.7, abs=0.05)
 
 
 def metre_of_a_full_can(incline: float) -> float:

@@ -15,7 +15,7 @@ from mjbeer.studies.benchmark.other_tools import (
     ODEINT,
     WHOLE_CALL,
 )
-from mjbeer.studies.benchmark.points import Benchmark, Curve, Point, milliseconds, spread
+from mjbeer.studies.benchmark.points import Benchmark, Curve, Point, Ratio, milliseconds, spread
 
 COMPARED = (1e-3, 1e-6)
 """The errors [rad] at which run times are compared, as motions are usually needed to these."""
@@ -144,6 +144,14 @@ def _of(study: Benchmark, case: str, name: str) -> list[Point]:
     return [point for point in study.of(case) if point.model == name]
 
 
+def time_ratio(study: Benchmark, case: str, name: str, error: float) -> Ratio | None:
+    """Return the run time of one of `OTHERS` divided by that of the best reduced setting.
+
+    The errors [rad] are equal. It is None if one of both does not reach the error.
+    """
+    return points.time_ratio(_of(study, case, name), _reduced(study, case), error)
+
+
 def ratio_range(study: Benchmark, name: str, error: float) -> str:
     """Return the least and the largest run time of one of `OTHERS` over all cases of two seconds.
 
@@ -151,7 +159,7 @@ def ratio_range(study: Benchmark, name: str, error: float) -> str:
     """
     known = []
     for case in study.cases:
-        ratio = points.time_ratio(_of(study, case, name), _reduced(study, case), error)
+        ratio = time_ratio(study, case, name, error)
         if ratio is not None:
             known.append(ratio.of_least)
     if not known:
