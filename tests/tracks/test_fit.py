@@ -173,6 +173,7 @@ def test_marks_on_the_board_undo_an_oblique_camera(tmp_path: pathlib.Path) -> No
     assert not warned(result, "model is wrong"), result
 
 
+@pytest.mark.costly
 def test_an_oblique_camera_is_doubted_without_marks(tmp_path: pathlib.Path) -> None:
     path, marks = seen_obliquely(tmp_path)
     scale = float(np.hypot(*(marks[2] - marks[0])[:2])) / 1.2
