@@ -26,6 +26,8 @@ from pydrake.systems.framework import DiagramBuilder
 
 logging.getLogger("drake").setLevel(logging.ERROR)
 STIFF = {"stiffness": 1e7, "dissipation": 1.0}
+LONGEST = 0.01
+"""The longest step under error control [s], a fraction of a swing."""
 SETTINGS = [
     Setting("cylinder", "default"),
     Setting("sphere", "default"),
@@ -35,6 +37,13 @@ SETTINGS = [
         "point_stiffness 1e7 N/m and dissipation 1 s/m; the integrator CENIC on a continuous "
         "plant, with steps of the given length",
         {**STIFF, "cenic": True},
+    ),
+    Setting(
+        "cylinder",
+        "stiff contact, CENIC, error control",
+        "the same, but CENIC chooses the steps: its accuracy is 1e-7 in place of a timestep of "
+        "1 ms, and falls with the square of the timestep",
+        {**STIFF, "cenic": True, "error_control": True},
     ),
     Setting(
         "cylinder, hydroelastic",
@@ -79,7 +88,10 @@ def roll(case: Case, timestep: float, setting: Setting) -> Motion:
     simulator = Simulator(builder.Build())
     if cenic:
         config = SimulatorConfig(integration_scheme="cenic", max_step_size=timestep)
-        config.use_error_control = False
+        config.use_error_control = values.get("error_control", False)
+        if config.use_error_control:
+            config.max_step_size = LONGEST
+            config.accuracy = 1e-7 * (1e3 * timestep) ** 2
         ApplySimulatorConfig(config, simulator)
     context = plant.GetMyMutableContextFromRoot(simulator.get_mutable_context())
     turned = RotationMatrix.MakeYRotation(case.phi0)

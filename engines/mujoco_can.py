@@ -9,20 +9,25 @@ import math
 import mujoco
 from common import Case, Motion, Setting, State, answer, sampled
 
-STIFF = 0.9999
+HARDEST = 0.9999
 """The largest impedance that MuJoCo allows."""
 TIMECONST = 2.0
 """The least time constant of a contact that MuJoCo allows, in timesteps."""
+CONTACT = (
+    "solref of two timesteps, solimp of 0.9999, an elliptic cone, and impratio 100: the stiffest "
+    "contact that the documentation allows"
+)
+STIFF = {"stiff": True, "cone": "elliptic", "impratio": 100}
 SETTINGS = [
     Setting("cylinder", "default"),
     Setting("sphere", "default"),
     Setting("cylinder", "RK4", "the integrator RK4", {"integrator": "RK4"}),
+    Setting("cylinder", "stiff contact", CONTACT, STIFF),
     Setting(
         "cylinder",
         "stiff contact, RK4",
-        "the integrator RK4; solref of two timesteps, solimp of 0.9999, an elliptic cone, and "
-        "impratio 100: the stiffest contact that the documentation allows",
-        {"integrator": "RK4", "stiff": True, "cone": "elliptic", "impratio": 100},
+        f"{CONTACT}; the integrator RK4",
+        {**STIFF, "integrator": "RK4"},
     ),
 ]
 XML = """
@@ -50,7 +55,7 @@ def roll(case: Case, timestep: float, setting: Setting) -> Motion:
     values = setting.values
     softness = ""
     if values.get("stiff"):
-        softness = f'solref="{TIMECONST * timestep} 1" solimp="{STIFF} {STIFF} 0.001"'
+        softness = f'solref="{TIMECONST * timestep} 1" solimp="{HARDEST} {HARDEST} 0.001"'
     text = XML.format(
         case=case,
         timestep=timestep,

@@ -19,18 +19,22 @@ from common import Case, Motion, Setting, State, answer, repeated, sampled
 
 MUJOCO = {"use_mujoco_cpu": True}
 """MuJoCo's own library: the same in Warp takes several times as long on a CPU."""
+RAW = 1
+"""Solref is MuJoCo's, and not made from ke and kd: Newton's SOLREF_MODE_RAW."""
+HARDEST = 0.9999
+"""The largest impedance that MuJoCo allows."""
 SETTINGS = [
     Setting("cylinder, XPBD", "default"),
     Setting("sphere, XPBD", "default"),
     Setting("cylinder, MuJoCo", "default", values={"options": MUJOCO}),
     Setting(
         "cylinder, MuJoCo",
-        "stiff contact",
-        "ke 1e5 and kd 1000 instead of 2500 and 100; an elliptic cone, and impratio 100",
+        "stiff contact, RK4",
+        "what MuJoCo's own row has: the integrator RK4; solref of two timesteps, solimp of 0.9999, "
+        "an elliptic cone, and impratio 100",
         {
-            "options": {**MUJOCO, "cone": "elliptic", "impratio": 100.0},
-            "stiffness": 1e5,
-            "damping": 1e3,
+            "options": {**MUJOCO, "integrator": "rk4", "cone": "elliptic", "impratio": 100.0},
+            "stiff": True,
         },
     ),
 ]
@@ -46,9 +50,14 @@ def roll(case: Case, timestep: float, setting: Setting) -> Motion:
     surface.mu = case.friction
     surface.mu_rolling = 0.0
     surface.mu_torsional = 0.0
-    if "stiffness" in values:
-        surface.ke = values["stiffness"]
-        surface.kd = values["damping"]
+    attributes = {}
+    if values.get("stiff"):
+        newton.solvers.SolverMuJoCo.register_custom_attributes(builder)
+        attributes = {
+            "mujoco:solref_mode": RAW,
+            "mujoco:solref": [2 * timestep, 1.0],
+            "mujoco:geom_solimp": [HARDEST, HARDEST, 0.001, 0.5, 2.0],
+        }
     turned = warp.quat_from_axis_angle(warp.vec3(0, 1, 0), case.phi0)
     cross = case.cross_inertia
     can = builder.add_body(
@@ -66,8 +75,12 @@ def roll(case: Case, timestep: float, setting: Setting) -> Motion:
         lying = warp.quat_from_axis_angle(warp.vec3(1, 0, 0), math.pi / 2)
         pose = warp.transform(warp.vec3(0, 0, 0), lying)
         size = {"radius": case.radius, "half_height": case.length / 2}
-        builder.add_shape_cylinder(can, xform=pose, cfg=weightless, **size)
-    builder.add_ground_plane()
+        builder.add_shape_cylinder(
+            can, xform=pose, cfg=weightless, custom_attributes=attributes, **size
+        )
+    builder.add_shape_plane(
+        plane=(0.0, 0.0, 1.0, 0.0), width=0.0, length=0.0, custom_attributes=attributes
+    )
     model = builder.finalize(device="cpu")
     model.set_gravity((case.gravity_x, 0.0, case.gravity_z))
     if setting.shape.endswith("XPBD"):

@@ -38,7 +38,7 @@ class Grasp(NamedTuple):
     """Share of the fingers' friction that holds the can: it slips at 1."""
     rise: np.ndarray
     """How high the beer rises at the wall, in radii."""
-    place: np.ndarray
+    places: np.ndarray
     """Where the can's bottom is [m], shape (steps, 3)."""
 
 
@@ -47,12 +47,12 @@ def world() -> mujoco.MjModel:
     spec = mujoco.MjSpec()
     spec.option.timestep = TIMESTEP
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_RK4
-    spec.option.impratio = 1000  # hard friction: with 10 the can creeps down by 0.6 mm/s
-    spec.worldbody.add_light(pos=[0.1, -1, 2], dir=[0, 0.5, -1])
+    spec.option.impratio = 1000  # hard friction: with 10 the can creeps down by 1 mm/s
+    spec.worldbody.add_light(pos=[CARRY / 2, -0.1, 1.5], dir=[0, 0.07, -1])
     spec.worldbody.add_geom(
         name="table",
         type=mujoco.mjtGeom.mjGEOM_BOX,
-        size=[0.4, 0.15, 0.01],
+        size=[0.28, 0.12, 0.01],
         pos=[CARRY / 2, 0, -0.01],
         rgba=[0.84, 0.71, 0.54, 1],
     )
@@ -127,6 +127,8 @@ def grasp() -> Grasp:
     model = world()
     data = mujoco.MjData(model)
     rows = []
+    places = []
+    in_hand = []
     while data.time < END:
         control(data)
         mujoco.mj_step(model, data)
@@ -134,20 +136,20 @@ def grasp() -> Grasp:
         mujoco.mj_forward(model, data)  # after a step, places and forces are those before it
         can = data.body("can-can")
         tilt = np.arccos(min(can.xmat[8], 1.0))
-        in_hand = can.xpos - data.body("hand").xpos
-        rows.append([data.time, tilt, friction_used(model, data), rise, *in_hand, *can.xpos])
-    time, tilt, used, rise, *places = np.array(rows).T
-    in_hand = np.transpose(places[:3])
+        rows.append([data.time, tilt, friction_used(model, data), rise])
+        places.append(can.xpos.copy())
+        in_hand.append(can.xpos - data.body("hand").xpos)
+    time, tilt, used, rise = np.transpose(rows)
     closed = np.searchsorted(time, CLOSED)
-    slip = np.linalg.norm(in_hand - in_hand[closed], axis=1)
-    return Grasp(time, slip, tilt, used, rise, np.transpose(places[3:]))
+    slip = np.linalg.norm(np.array(in_hand) - in_hand[closed], axis=1)
+    return Grasp(time, slip, tilt, used, rise, np.array(places))
 
 
 if __name__ == "__main__":
     run = grasp()
     held = run.time > CLOSED
     ringing = run.rise[run.time > CARRIED + 0.1].max()
-    x, _, z = run.place[-1]
+    x, _, z = run.places[-1]
     print(f"the can was carried {x:.4f} m and hangs {z:.4f} m above the table")
     print(f"it moved by at most {1e3 * run.slip[held].max():.3f} mm in the fingers,")
     print(f"tilted by at most {np.degrees(run.tilt[held].max()):.3f} degrees,")

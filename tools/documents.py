@@ -34,7 +34,7 @@ from mjbeer.studies.engines import engine_plot, engine_tables, findings
 from mjbeer.studies.engines.results import Results
 from mjbeer.studies.stability import stability_maps, stability_study
 from mjbeer.studies.stability.judge import (
-    BOTH,
+    JUDGES,
     NOBODY,
     REFUSED,
     RIGHT,
@@ -60,7 +60,11 @@ import real_beer  # noqa: E402
 
 from tests.support import rows  # noqa: E402
 
-DOCUMENTS = [CHECKOUT / "README.md", *sorted(CHECKOUT.glob("docs/*.md"))]
+DOCUMENTS = [
+    CHECKOUT / "README.md",
+    *sorted(CHECKOUT.glob("docs/*.md")),
+    CHECKOUT / "engines" / "SETTINGS.md",
+]
 COUNTS = json.loads((CHECKOUT / "docs" / "stability.json").read_text(encoding="utf-8"))
 BENCHMARK = Benchmark.load(SHIPPED)
 MAPS = stability_maps.load().maps
@@ -73,6 +77,10 @@ GENTLE = math.radians(2)
 """The incline [rad] of estimates for a real can."""
 USUAL = math.radians(10)
 """The incline [rad] of the examples."""
+_CYLINDER = (2.119, 1.835)
+"""Times of an empty and of a filled cylinder [s]: physics.stackexchange.com, question 334250."""
+_SOUPS = (2.21, 2.65)
+"""Times of broth and cream of mushroom [s]: "Soup Can Lab", scribd.com, document 450335766."""
 
 
 def anew(text: str) -> str:
@@ -132,9 +140,10 @@ def holds() -> str:
                 "**stability**",
                 f"the longest stable timestep of a swing is within {border_error():.2g} % of "
                 f"linear theory; {trusted(random):,} of {ended(random):,} new random runs were "
-                f"trusted, and {wrong_of(random)}; {random.get(stability_study.NEEDLESS, 0):,} "
-                f"others were doubted although they were right; {alone(random):,} had one "
-                "independent check instead of two ([stability](docs/stability.md))",
+                f"trusted, and {wrong_of(random)}{at_most(random)}; "
+                f"{random.get(stability_study.NEEDLESS, 0):,} others were doubted although they "
+                f"were right; {alone(random):,} had one independent check instead of two "
+                "([stability](docs/stability.md))",
             ),
             (
                 "**the paper**",
@@ -331,27 +340,6 @@ def border_error() -> float:
     return 100 * worst
 
 
-def damped() -> str:
-    """How damped runs of a millisecond a step end, by damping."""
-    words = ("explodes", "inaccurate", "accurate")
-    dampings = (0.01, 0.1, 1.0)
-    lines = []
-    for drawn in MAPS:
-        if drawn.family != "damping":
-            continue
-        column = nearest(drawn.timesteps, 1e-3)
-        rows_shown = [drawn.measured[nearest(drawn.values, damping)] for damping in dampings]
-        lines.append((drawn.integrator, *(words[int(row[column])] for row in rows_shown)))
-    columns = ("1 ms", *(f"{damping:g} N m s" for damping in dampings))
-    return table(columns, lines, left=(0, 1, 2, 3))
-
-
-def nearest(values: Sequence[float], wanted: float) -> int:
-    """Return the index of the value whose ratio to another one is nearest to 1."""
-    distances = [abs(math.log(value / wanted)) for value in values]
-    return distances.index(min(distances))
-
-
 def damped_runs() -> str:
     """How the runs in the maps of damping ended."""
     maps = [drawn for drawn in MAPS if drawn.family == "damping"]
@@ -377,30 +365,44 @@ def trusted(count: dict[str, int]) -> int:
 
 
 def wrong_of(count: dict[str, int]) -> str:
-    """Return how many of the trusted runs were wrong, and how many may be."""
+    """Return how many of the trusted runs were wrong."""
+    wrong = count.get(UNDETECTED_ERROR, 0)
+    return f"{wrong or 'none'} of these {'was' if wrong < 2 else 'were'} wrong"
+
+
+def at_most(count: dict[str, int]) -> str:
+    """Return how many of the trusted runs may be wrong, in parentheses."""
     share = stability_study.bound(count)
-    found = f"{count.get(UNDETECTED_ERROR, 0)} of these were wrong"
     if share is None:
-        return found
+        return ""
     percent = stability_study.rounded_up(100 * share)
-    return f"{found} (with 95 % confidence at most {percent} % of trusted runs are)"
+    return f" (with 95 % confidence at most {percent} % of trusted runs are)"
 
 
 def alone(count: dict[str, int]) -> int:
-    """Return the number of runs that one theory alone judged."""
+    """Return the number of runs that had one independent check."""
     return sum(count.get(judge, 0) for judge in (THEORY, SERIES))
 
 
 def kinds() -> str:
-    """How the random runs ended, by kind of model, and what judged them."""
+    """How the random runs ended, by kind of model."""
     counted = stability_study.Totals(COUNTS["known"], COUNTS["kinds"])
     tables = stability_study.search_tables(counted)
     (shown,) = [found for found in tables if "by model" in found.title]
-    left_out = (NOBODY, BOTH, SERIES, stability_study.ABOVE, stability_study.TWICE)
+    left_out = (*JUDGES, stability_study.ABOVE, stability_study.TWICE)
     columns = [at for at, name in enumerate(shown.columns) if name not in left_out]
     return table(
         tuple(shown.columns[at] for at in columns),
         [tuple(row[at] for at in columns) for row in shown.rows],
+    )
+
+
+def answer() -> str:
+    """Whether a run that is trusted was ever wrong."""
+    found = COUNTS["kinds"]["all"]
+    return prose(
+        f"A random search trusted {trusted(found):,} of {ended(found):,} runs, and "
+        f"{wrong_of(found)}."
     )
 
 
@@ -418,17 +420,19 @@ def honesty() -> str:
     outside = ended(COUNTS["kinds"].get(stability_study.OUTSIDE, {}))
     refused = f"{found.get(REFUSED, 0):,} were refused"
     if outside:
-        refused += f", {outside:,} of them because they are outside the domain"
+        refused += f", {outside:,} of these because they are outside the domain"
+    checked = trusted(found) + found.get(WARNED, 0)
     return prose(
-        f"{ended(found):,} random runs, with the numbers from {first} on, ended like this: "
-        f"{trusted(found):,} were trusted, and {wrong_of(found)}. "
-        f"{found.get(WARNED, 0):,} were doubted, {needless:,} of them although their samples were "
-        f"right, and {refused}. "
-        f"{alone(found):,} were judged by one theory alone, and {found.get(NOBODY, 0)} by none. "
-        f"{above} of the trusted runs had an error above its estimate, {twice} of them above twice "
-        "the estimate. "
+        f"{ended(found):,} random runs, numbered from {first} on, ended as follows. "
+        f"{trusted(found):,} were trusted, and {wrong_of(found)}{at_most(found)}. "
+        f"{found.get(WARNED, 0):,} were doubted, although {needless:,} of these were right. "
+        f"{refused}. "
+        f"Of the {checked:,} runs that were not refused, {alone(found):,} had one independent "
+        f"check and {found.get(NOBODY, 0)} had none; the rest had two. "
+        f"The error of {above} trusted runs was larger than their own estimate, and that of "
+        f"{twice or 'none'} more than twice as large. "
         f"Of {ended(known):,} runs of known cases {trusted(known):,} were trusted, and "
-        f"{known.get(UNDETECTED_ERROR, 0)} of these were wrong."
+        f"{wrong_of(known)}."
     )
 
 
@@ -546,6 +550,48 @@ def metre() -> str:
     return table(columns, lines)
 
 
+def measured_by_others() -> str:
+    """How the times of rolling cylinders compare, as others measured them and by theory."""
+    down = frozen(USUAL).gravity * math.sin(USUAL)
+    solid = frozen(USUAL, 1.0).acceleration()
+
+    empty = 0.073  # [kg]
+    heaviest = 2.278
+    wall = Can.hoop(mass=empty)
+    contents = (heaviest - empty) / (math.pi * wall.radius**2 * wall.length)
+    turning = frozen(USUAL, 1.0, wall, contents).acceleration()
+    not_turning = sliding(USUAL, 1.0, wall, contents).acceleration()
+    shell = down / 2
+
+    tin = Can.hoop(mass=sliding(USUAL, 1.0).mass / 9)  # a tenth of the whole
+    cream_in_tin = frozen(USUAL, 1.0, tin).acceleration()
+    broth_in_tin = sliding(USUAL, 1.0, tin).acceleration()
+
+    cylinder = f"**a cylinder of {empty:g} kg, {_CYLINDER[0]:.3f} s, and of {heaviest:g} kg, "
+    soups = f"**broth, {_SOUPS[0]:.2f} s, and cream of mushroom, {_SOUPS[1]:.2f} s**"
+    lines = [
+        (f"{cylinder}{_CYLINDER[1]:.3f} s**", f"**{quotient(*_CYLINDER)}**"),
+        ("a thin shell, and a solid cylinder without a wall", time_ratio(shell, solid)),
+        ("a thin wall of 0.073 kg, and what is inside turns with it", time_ratio(shell, turning)),
+        ("the same, and what is inside does not turn", time_ratio(shell, not_turning)),
+        (soups, f"**{quotient(*_SOUPS)}**"),
+        ("the broth does not turn, the cream does; cans without mass", time_ratio(down, solid)),
+        ("the same; cans of a tenth of the mass", time_ratio(broth_in_tin, cream_in_tin)),
+        ("both turn with their cans", time_ratio(solid, solid)),
+    ]
+    return table(("**measured**, and by theory", "ratio of the times"), lines)
+
+
+def quotient(first: float, second: float) -> str:
+    """Return the ratio of two times as text."""
+    return f"{first / second:.3f}"
+
+
+def time_ratio(first: float, second: float) -> str:
+    """Return the ratio of the times that two accelerations take for one distance, as text."""
+    return f"{math.sqrt(second / first):.3f}"
+
+
 def with_water(volume: float, friction: float = 1.0) -> Trajectory:
     """Return the first metre of a can with a `volume` [mL] of water on the gentle incline."""
     scene = real_beer.water_in(volume, GENTLE, friction)
@@ -554,12 +600,17 @@ def with_water(volume: float, friction: float = 1.0) -> Trajectory:
 
 
 def engines() -> str:
-    """The answer of the can test, in two sentences."""
+    """The answer of the can test, in some sentences."""
     return prose(findings.answer(ENGINES))
 
 
 def engine_errors() -> str:
-    """Errors of a can in physics engines."""
+    """Errors of a can in physics engines, at their defaults and at the closest setting."""
+    return plain(engine_tables.errors(ENGINES, engine_tables.main_ways(ENGINES)))
+
+
+def all_engine_errors() -> str:
+    """Errors with all shapes and settings."""
     return plain(engine_tables.errors(ENGINES))
 
 
@@ -606,11 +657,12 @@ def engine_versions() -> str:
 
 _OF_THE_PAPER = (holds, misprints)
 _OF_THE_BENCHMARK = (others, whole_calls, ranges, measured, long_run, contact)
-_OF_STABILITY = (steps, agreement, damped, damped_runs, kinds, honesty)
+_OF_STABILITY = (answer, steps, agreement, damped_runs, kinds, honesty)
 _OF_REAL_BEER = (swings, speeds, metre)
 _OF_ENGINES = (
     engines,
     engine_errors,
+    all_engine_errors,
     engine_conservation,
     engine_tuning,
     engine_findings,
@@ -626,6 +678,7 @@ _ALL = (
     *_OF_THE_BENCHMARK,
     *_OF_STABILITY,
     *_OF_REAL_BEER,
+    measured_by_others,
     *_OF_ENGINES,
 )
 MADE = {made.__name__.replace("_", "-"): made for made in _ALL}

@@ -37,8 +37,8 @@ from tools.environments import CHECKOUT, AbsentError, python_with
 
 FOLDER = CHECKOUT / "engines"
 ENVIRONMENTS = CHECKOUT / "build" / "engines"
-LIMIT = 120.0
-"""The longest time of a process, which rolls the can several times [s]."""
+LIMIT = 300.0
+"""The longest time of a process, which rolls the can several times, and may compile first [s]."""
 _ENDING = "_can"
 """The end of the name of an engine's file."""
 _HEAD = re.compile(r"^# /// script\n(?P<lines>(?:#.*\n)*?)# ///$", re.MULTILINE)
@@ -191,7 +191,7 @@ def main() -> None:
     only = parser.parse_args().only
     paths = sorted(FOLDER.glob(f"*{_ENDING}.py"))
     results = Results()
-    if only:
+    if only is not None:
         names = [path.stem.removesuffix(_ENDING) for path in paths]
         if only not in names:
             parser.error(f"there is no engine {only!r}; allowed are {', '.join(names)}")
@@ -204,6 +204,8 @@ def main() -> None:
         results = Results.load(unfinished)
         say(f"going on from {unfinished}")
     measure(paths, results, unfinished)
+    if only and paths[0].stem in results.absent:
+        sys.exit(f"nothing was measured, and {RESULTS.name} stays as it is")
     results.sort()
     files.write(RESULTS, results.json())
     unfinished.unlink(missing_ok=True)

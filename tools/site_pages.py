@@ -2,7 +2,7 @@
 
 Pages keep their paths in the checkout, so that a link leads to the same place as on a code host,
 and what they link to comes with them. Formulas, written as code hosts read them, become MathML.
-The films are taken out of the report, for each to be a file with a name.
+A page shows the films of the report, which are files beside it.
 """
 
 import base64
@@ -22,7 +22,7 @@ PAGES = [
     *CHECKOUT.glob("*.md"),
     *sorted(CHECKOUT.glob("docs/*.md")),
     CHECKOUT / "mjcf/README.md",
-    CHECKOUT / "engines/README.md",
+    *sorted(CHECKOUT.glob("engines/*.md")),
 ]
 LINK = re.compile(r"\]\((?!\w+:|#)(?P<path>[^)#\s]+)")
 """A link to a file."""
@@ -35,8 +35,12 @@ FILM = re.compile(
     re.DOTALL,
 )
 """A film in the report."""
-DATA = re.compile(r'"data:(?:image|video)/(?P<ending>webp|mp4);base64,(?P<content>[^"]+)"')
-"""The film itself, and its still."""
+STILL = re.compile(r'poster="data:image/webp;base64,(?P<content>[^"]+)"')
+"""The still of a film."""
+RENDERED = re.compile(
+    r"(?<!!)(?P<words>\[[^]!]*\]\((?:\.\./)*)renders/(?P<name>[\w-]+)\.webp(?=\))"
+)
+"""A link to a small copy of a film, which a code host can show."""
 
 
 class Formula(InlineProcessor):
@@ -93,7 +97,8 @@ def on_files(files: Files, config: MkDocsConfig) -> None:
 
 
 def on_page_markdown(markdown: str, **_: object) -> str:
-    """Let a link to a program lead to its page."""
+    """Let a link to a program lead to its page, and one to a small copy of a film to the film."""
+    markdown = RENDERED.sub(r"\g<words>films.md#\g<name>", markdown)
     return PROGRAM.sub(r"\1.md", markdown)
 
 
@@ -108,16 +113,17 @@ def links(page: pathlib.Path) -> list[str]:
 
 
 def films() -> Iterator[tuple[str, str | bytes]]:
-    """Yield the files of the films, and the page that shows them."""
-    page = ["# Films", "Each film is a file, for a lecture to take."]
+    """Yield the stills of the films, and the page that shows the films."""
+    page = ["# Films", "Each film is a file with its name, for a lecture to take."]
     for film in FILM.finditer((REPORT / "index.html").read_text(encoding="utf-8")):
         name = film["name"]
-        for file in DATA.finditer(film["pictures"]):
-            yield f"films/{name}.{file['ending']}", base64.b64decode(file["content"])
+        for still in STILL.finditer(film["pictures"]):
+            yield f"films/{name}.webp", base64.b64decode(still["content"])
         page += [
+            f'<span id="{name}"></span>',
             f"## {film['title']}",
-            f'<video controls preload="none" src="films/{name}.mp4" poster="films/{name}.webp">'
+            f'<video controls preload="none" src="report/{name}.mp4" poster="films/{name}.webp">'
             "</video>",
-            f"[{name}.mp4](films/{name}.mp4): {film['caption']}",
+            f"[{name}.mp4](report/{name}.mp4): {film['caption']}",
         ]
     yield "films.md", "\n\n".join(page)

@@ -10,12 +10,12 @@ import mjbeer
 from mjbeer.output import files
 
 WIDTH, HEIGHT, FPS = 720, 450, 18
-"""Width and height [pixels] and pictures per second, as in renders.py."""
+"""Width and height [pixels] and pictures per second."""
 CHECKOUT = pathlib.Path(__file__).parents[2]
 
 
 def film(path: pathlib.Path) -> None:
-    """Draw the can in its fingers, with the rise of the beer and the largest one so far."""
+    """Draw the can in its fingers, and tell how high the beer rises now and has risen at most."""
     example = runpy.run_path(str(CHECKOUT / "examples" / "grasp.py"))
     model = example["world"]()
     model.vis.global_.offwidth = WIDTH
@@ -25,24 +25,28 @@ def film(path: pathlib.Path) -> None:
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)  # The first picture is drawn before the first step.
     camera = mujoco.MjvCamera()
-    camera.lookat[:] = [example["CARRY"] / 2, 0, 0.15]
-    camera.distance = 0.78
-    camera.azimuth = 52
-    camera.elevation = -14
+    camera.lookat[:] = [example["CARRY"] / 2, 0, 0.145]
+    camera.distance = 0.64
+    camera.azimuth = 60
+    camera.elevation = -12
     font = ImageFont.load_default(20)
     pictures = []
+    rise = 0.0
     highest = 0.0
     with mujoco.Renderer(model, HEIGHT, WIDTH) as renderer:
         while data.time < example["END"]:
             if data.time >= len(pictures) / FPS:
                 renderer.update_scene(data, camera)
                 picture = Image.fromarray(renderer.render())
-                said = f"{data.time:.1f} s: the beer has risen by at most {highest:.2f} R"
+                said = (
+                    f"{data.time:.1f} s: the beer rises by {rise:.2f} R (at most {highest:.2f} R)"
+                )
                 ImageDraw.Draw(picture).text((16, 12), said, (40, 50, 60), font)
                 pictures.append(picture)
             example["control"](data)
             mujoco.mj_step(model, data)
-            highest = max(highest, mjbeer.wall_rise(model, data))
+            rise = mjbeer.wall_rise(model, data)
+            highest = max(highest, rise)
     with files.atomic_write(path) as temporary:
         pictures[0].save(
             temporary,

@@ -191,5 +191,5 @@ def test_what_a_liquid_uses_is_told_and_what_speaks_against_it(
 def test_an_equation_that_is_not_solved_is_told(capsys: pytest.CaptureFixture[str]) -> None:
     words = "simulate frozen --duration 0.5 --integrator Euler --timestep 4e-3"
     assert main(words.split()) == 0
-    message = "equations not solved: energy or momentum drift like an error of "
+    message = "equations not solved: energy or momentum drifts as with an error of "
     assert capsys.readouterr().err.startswith(message)

@@ -15,7 +15,7 @@ from tests.support.processes import hear, interrupt, start
 
 pytestmark = pytest.mark.slow
 
-MESSAGE = "mjbeer: interrupted; what was written is whole\n"
+MESSAGE = "mjbeer: interrupted; every file written is complete\n"
 
 
 def test_a_report_ends_with_its_processes(tmp_path: pathlib.Path) -> None:

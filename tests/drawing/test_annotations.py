@@ -10,6 +10,7 @@ import pytest
 from mjbeer import Scene, Trajectory, exact, frozen, hoop, pendulum, sliding
 from mjbeer.drawing.annotations import LONGEST, Annotations
 from mjbeer.drawing.camera import View, follow, on_incline, scale
+from mjbeer.drawing.quantities import mean_forces
 from mjbeer.drawing.scene import coordinates
 from mjbeer.drawing.style import FilmStyle, Mark
 from mjbeer.model.looks import WALL
@@ -118,7 +119,7 @@ def test_forces_push_the_can_where_it_touches_the_incline() -> None:
     # Friction is positive up the incline, which is to the left.
     along = math.pi * (friction > 0) - motion.scene.incline
     under_the_wall = place(motion, view, u, -WALL * 0.033)
-    assert pressing.tip == pytest.approx(under_the_wall, abs=ROUNDING)
+    assert pressing.tail == pytest.approx(under_the_wall, abs=ROUNDING)
     assert difference(direction(pressing.tail, pressing.tip), away) < ROUNDING
     assert difference(direction(pushing.tail, pushing.tip), along) < ROUNDING
 
@@ -129,6 +130,35 @@ def test_forces_push_the_can_where_it_touches_the_incline() -> None:
     assert length_of_friction / length_of_normal == pytest.approx(abs(friction) / normal, rel=0.02)
     assert length_of_normal <= LONGEST * radius * (1 + 1e-9)
     assert sheet.words == ["N", "F"]
+
+
+def test_the_longest_arrow_is_that_of_the_largest_force() -> None:
+    """No force of a can that rolls is too long to be drawn as long as it is."""
+    motion = exact(frozen(), np.linspace(0, 0.82, 821), math.pi)
+    forces = np.hypot(*mean_forces(motion))
+
+    def length(time: float) -> float:
+        sheet, view, *_ = drawn(motion, time, "normal")
+        (arrow,) = sheet.arrows
+        radius = RADIUS * view.scale(np.array([0.0, PLANE, 0.0]))
+        return float(np.hypot(*(arrow.tip - arrow.tail))) / radius
+
+    largest = forces.argmax()
+    expected = mean_forces(motion).normal / forces[largest] * LONGEST
+    for sample in (0, 300, largest):
+        assert length(motion.time[sample]) == pytest.approx(expected[sample], rel=1e-6)
+
+
+def test_the_line_of_the_equilibrium_goes_through_the_axis_at_its_angle() -> None:
+    motion = exact(frozen(), TIMES, 0.0)
+
+    sheet, view, u, _, _ = drawn(motion, 0.2, "equilibrium")
+
+    (line,) = sheet.lines
+    expected = -motion.scene.incline - motion.scene.equilibrium()
+    assert difference(2 * direction(line[0], line[1]), 2 * expected) < ROUNDING
+    axis = place(motion, view, u, motion.scene.can.radius)
+    assert line.mean(axis=0) == pytest.approx(axis, abs=ROUNDING)
 
 
 def test_the_ghost_is_where_even_acceleration_has_it() -> None:

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from mjbeer import exact, frozen, hoop, sliding
 from mjbeer.drawing.camera import (
     AROUND,
+    BELOW,
     CAMERAS,
     Camera,
     CameraPath,
@@ -111,4 +112,4 @@ def test_a_can_that_stays_fills_the_picture_but_for_the_room_around_it() -> None
     view = followed("stays", "auto").view(0.0)
 
     radius = RADIUS * view.scale(np.array([0.0, PLANE, 0.0]))
-    assert radius == pytest.approx(WIDE[1] / (2 * AROUND), rel=1e-9)
+    assert radius == pytest.approx(WIDE[1] / (AROUND + BELOW), rel=1e-9)

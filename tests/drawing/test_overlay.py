@@ -78,6 +78,17 @@ def test_notes_are_there_while_it_happens() -> None:
     assert np.cos(angles(run, light)[0]) < 0
 
 
+def test_one_note_is_shown_at_a_time() -> None:
+    """A hoop that flies does not press either: of the two the first is shown."""
+    run = simulate(frozen(), 1.0, math.pi, rolling="contact", timestep=2e-4, friction=1.0)
+
+    flies, light = note_spans(run, ["flies", "light"]).values()
+
+    assert any(first < 0.9 < last for first, last in noted(run, "light"))
+    assert not any(first < 0.9 < last for first, last in light)
+    assert any(first < 0.9 < last for first, last in flies)
+
+
 def sliding_steadily(scene: Scene, rate: float) -> Trajectory:
     """Return the motion of a can that slides down the incline at a rate [m/s] and does not turn."""
     time = np.linspace(0, 1, 11)

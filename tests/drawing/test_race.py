@@ -143,6 +143,35 @@ def test_a_race_of_large_cans_over_a_long_distance_looks_like_one_of_small_cans(
     assert (np.abs(np.diff(small, axis=0)).max(axis=-1) > 25).mean() > 1e-2
 
 
+@pytest.mark.draws
+def test_each_can_has_a_close_up_and_is_held_at_the_finish() -> None:
+    """The close-up of the can that has arrived stays as it is, and so does that can."""
+    can = Can.massless(0.033, 0.12)
+    quick = Runner("quick", exact(sliding(0.3, can=can), np.linspace(0, 0.9, 201), 1.0), RED)
+    slow = Runner("slow", exact(frozen(0.3, can=can), np.linspace(0, 0.9, 201), math.pi), BLUE)
+    finish = quick.finish(0.3)
+    assert finish < slow.finish(0.3)
+    film = Race("a race", lambda: [quick, slow], 0.3, duration=0.9, speed=1.0)
+
+    before, after, later = film.plan().draw(finish + np.array([-0.1, 0.001, 0.05]), 640, 360)
+
+    close_ups = slice(290, 355)
+    of_quick, of_slow = slice(0, 320), slice(320, 640)
+    assert np.ptp(after[close_ups, of_quick]) > 200
+    assert np.array_equal(after[close_ups, of_quick], later[close_ups, of_quick])
+    assert not np.array_equal(before[close_ups, of_quick], after[close_ups, of_quick])
+    assert not np.array_equal(after[close_ups, of_slow], later[close_ups, of_slow])
+    board = slice(60, 240)
+    assert red(after[board]) == pytest.approx(red(later[board]), abs=0.5)
+    assert red(after[board]) - red(before[board]) > 20
+
+
+def red(picture: np.ndarray) -> float:
+    """Return the column in the middle of what is red."""
+    is_red = (picture[..., 0] > 2.0 * picture[..., 1]) & (picture[..., 0] > 100)
+    return float(np.median(np.nonzero(is_red)[1]))
+
+
 @pytest.fixture
 def joined(monkeypatch: pytest.MonkeyPatch) -> list[np.ndarray]:
     """Return a list that is filled with the places of each dashed line as it is drawn [pixels]."""

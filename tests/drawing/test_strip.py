@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from mjbeer import frozen, hoop, simulate
+from mjbeer import exact, frozen, hoop, simulate
 from mjbeer.drawing.sheet import Sheet
 from mjbeer.drawing.strip import Chart, ChartStrip, Line, charts, unbroken
 
@@ -74,6 +74,68 @@ def test_theory_is_not_named_where_a_can_does_not_roll_at_all() -> None:
     )
     (chart,) = charts(run, ["normal"])
     assert [line.name for line in chart.lines] == ["MuJoCo"]
+
+
+@pytest.mark.parametrize(
+    ("values", "ticks"),
+    [
+        ((-4.9, 4.9), [-5, 0, 5]),  # both ends of what swings are named
+        ((-11.1, 11.2), [-10, 0, 10]),
+        ((0.06, 5.3), [0, 2, 4, 6]),
+        ((0.0, 0.017), [0, 0.01, 0.02]),
+        ((-0.05, 1.6), [0, 0.5, 1, 1.5]),
+        ((-170.0, 110.0), [-200, -100, 0, 100]),
+        ((3.0, 3.0), [3, 3.5, 4]),
+    ],
+)
+def test_an_axis_reaches_from_round_value_to_round_value(
+    values: tuple[float, float], ticks: list[float]
+) -> None:
+    line = Line("a line", np.array([0.0, 1.0]), np.array(values))
+
+    assert Chart("a chart", [line]).ticks() == pytest.approx(np.array(ticks))
+
+
+def test_an_angle_that_takes_all_values_has_an_axis_of_a_whole_turn() -> None:
+    line = Line("a line", np.array([0.0, 1.0]), np.array([-170.0, 110.0]))
+
+    assert Chart("angle [°]", [line]).ticks().tolist() == [-180, 0, 180]
+
+
+def test_no_value_of_a_film_is_beyond_its_axis() -> None:
+    """Frozen beer that rolls down presses with up to five weights."""
+    run = simulate(frozen(), 0.82, math.pi, tolerance=1e-9)
+
+    (chart,) = charts(run, ["normal"])
+
+    most = chart.lines[0].values.max()
+    assert 4.5 < most < chart.ticks()[-1]
+    assert "up to" not in chart.title
+
+
+def test_friction_stays_between_its_limits() -> None:
+    """The mean friction of a can that slips is mu N, and never more."""
+    run = simulate(frozen(), 0.5, frozen().equilibrium(), rolling="contact", friction=0.1)
+
+    (chart,) = charts(run, ["friction"], mu=0.1)
+
+    up, down, friction, *_ = chart.lines
+    assert up.name == down.name == "μN and −μN"
+    assert friction.name == "MuJoCo"
+    assert (friction.values <= up.values * (1 + 1e-4)).all()
+    assert (friction.values >= down.values * (1 + 1e-4)).all()
+    assert friction.values[:50] == pytest.approx(up.values[:50], rel=1e-3)
+
+
+def test_the_equilibrium_is_a_line_of_the_chart_of_phi() -> None:
+    run = exact(frozen(), np.linspace(0, 2, 401), 0.0)
+
+    distance, angle = charts(run, ["u", "phi"], equilibrium=True)
+
+    assert [line.thin for line in angle.lines] == [False, True]
+    assert not any(line.thin for line in distance.lines)
+    middle = (angle.lines[0].values.max() + angle.lines[0].values.min()) / 2
+    assert angle.lines[1].values == pytest.approx(middle, abs=1.0)  # [degrees]
 
 
 def test_an_angle_that_jumps_is_not_joined() -> None:

@@ -377,6 +377,7 @@ def test_what_cannot_be_filled_anew_is_refused() -> None:
         (sliding(), {}, UnsupportedError, "no can without inertia around a sliding load"),
         (pendulum(), {}, UnsupportedError, "has beer in it, got a load without a fill"),
         (sliding(can=METAL, drag=0.1), {}, UnsupportedError, "no drag of the air"),
+        ("beer", {}, ParameterError, "can must be a Standing or a Scene, got 'beer'"),
         (
             standing(),
             {"friction": [1, 0, 0, 0]},

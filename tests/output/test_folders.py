@@ -111,7 +111,7 @@ def test_a_folder_of_another_command_is_refused(tmp_path: pathlib.Path) -> None:
     with pytest.raises(OutputError) as caught:
         write(tmp_path, "new")
     advice = "name another folder, or remove this one"
-    assert str(caught.value) == f"cannot write to {tmp_path}: it is of `mjbeer else`: {advice}"
+    assert str(caught.value) == f"cannot write to {tmp_path}: it belongs to `mjbeer else`: {advice}"
 
 
 def test_a_folder_that_is_a_file_is_refused(tmp_path: pathlib.Path) -> None:

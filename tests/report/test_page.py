@@ -108,10 +108,12 @@ def test_a_report_is_one_page_with_all_films(
     folder = tmp_path / "report"
     assert main(["report", "--output", str(folder), *(["--quick"] if quick else [])]) == 0
     shown = {name for name in os.listdir(folder) if not name.startswith(".")}
-    assert shown == {"index.html", "live.html", "stability-more.svg"}
-    text = (folder / "index.html").read_text()
-    sources = [source.partition(",")[2] for source in Page(text).values("src", "source")]
     names = [*FILMS] if quick else [*FILMS, "told"]
+    files = {f"{name}.mp4" for name in names}
+    assert shown == {"index.html", "live.html", "stability-more.svg"} | files
+    text = (folder / "index.html").read_text()
+    assert files <= set(Page(text).values("href", "a"))
+    sources = [source.partition(",")[2] for source in Page(text).values("src", "source")]
     assert [base64.b64decode(source).decode() for source in sources] == [
         f"film {name}" for name in names
     ]

@@ -103,26 +103,27 @@ def test_mujocos_meshes_of_the_table_end_where_theory_says(facets: int) -> None:
     assert polygon.mujoco_end(facets, polygon.TIME_CONSTANTS[-1]) > theory
 
 
+def physx_as_theory(rolled: polygon.PhysxPrism) -> None:
+    """A prism with two ends that differ rolls on lines between their corners, which theory does not
+    have: the mean of two prisms is meant."""
+    theory = np.mean([polygon.theory_end(edges) for edges in (rolled.left, rolled.right)])
+    within = 0.01 if rolled.left == rolled.right else 0.07
+    assert theory == pytest.approx(rolled.end["1e-4"], rel=within)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("rolled", polygon.physx_prisms()[:3], ids=lambda rolled: rolled.asked)
 def test_physx_rolls_the_hull_that_it_has_kept(rolled: polygon.PhysxPrism) -> None:
-    """Its two ends differ, and a prism with two ends rolls between them: their mean is meant. The
-    hull of 32 has an end on which it would lie still."""
-    ends = []
-    for edges in (rolled.left, rolled.right):
-        if min(abs(edge) for edge in edges) < 0.1:
-            ends.append(polygon.theory_end(edges))
-    assert np.mean(ends) == pytest.approx(rolled.end["1e-4"], rel=0.05)
+    physx_as_theory(rolled)
     if rolled.asked > 16:
         whole = polygon.theory_end(regular(rolled.asked).tolist(), flies=False)
-        assert whole > 1.2 * rolled.end["1e-4"]
+        assert whole > 1.15 * rolled.end["1e-4"]
 
 
 @pytest.mark.costly
 @pytest.mark.parametrize("rolled", polygon.physx_prisms()[3:], ids=lambda rolled: rolled.asked)
 def test_so_does_it_with_more_facets_and_in_a_larger_world(rolled: polygon.PhysxPrism) -> None:
-    theory = np.mean([polygon.theory_end(edges) for edges in (rolled.left, rolled.right)])
-    assert theory == pytest.approx(rolled.end["1e-4"], rel=0.05)
+    physx_as_theory(rolled)
 
 
 def test_what_is_no_prism_or_does_not_roll_is_refused() -> None:

@@ -38,7 +38,7 @@ class Recorder(Sheet):
     ) -> None:
         self.lines.append(places)
 
-    def arrow(self, tail: np.ndarray, tip: np.ndarray, width: float, colour: Colour) -> None:
+    def arrow(self, tail: np.ndarray, tip: np.ndarray, *arguments: Any, **more: Any) -> None:
         self.arrows.append(Arrow(np.asarray(tail), np.asarray(tip)))
 
     def disc(self, place: np.ndarray, radius: float, colour: Colour) -> None:

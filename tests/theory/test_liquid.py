@@ -4,6 +4,7 @@ and the scenes."""
 import math
 import re
 import warnings
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from scipy.integrate import solve_bvp
 from scipy.optimize import brentq
 
 from mjbeer import Can, LiquidWarning, Load, Scene, exact, liquid, sliding
+from mjbeer.exceptions import NoEquilibriumError, ParameterError
 from mjbeer.theory import slosh
 from mjbeer.theory.equations import accelerations, resting_tilt, slip_rate_of
 from mjbeer.theory.liquid import liquid_in, lump_warning
@@ -166,7 +168,10 @@ TURNS = [
     ({"name": "honey"}, r"its layers are 0\.46 radii"),
     ({"fill": 0.995, "incline": 0.0}, r"its fill is not within 0\.01 to 0\.99"),
     ({"fill": 0.75}, "the incline is too steep to hold it"),
-    ({"fill": 0.25}, "the slowest mode of its slosh has only 30 % of the energy"),
+    (
+        {"fill": 0.2},
+        "ice swings faster than the slowest mode of its slosh, which has only 15 % of the energy",
+    ),
 ]
 
 
@@ -204,8 +209,8 @@ def test_slosh_ends_at_one_viscosity() -> None:
 
 
 def test_a_liquid_with_several_modes_is_told() -> None:
-    """From a half to 0.8 of the energy the load sloshes, and below it has the inertia of ice."""
-    for fill, share, inertia in ((0.4, "72 %", "of that mode"), (0.25, "30 %", "of ice")):
+    """Below 0.8 of the energy, whether the load sloshes or has the inertia of ice."""
+    for fill, share, inertia in ((0.4, "72 %", "of that mode"), (0.2, "15 %", "of ice")):
         message = f"the slowest mode has {share} of the energy .* has the inertia {inertia}$"
         with pytest.warns(LiquidWarning, match=message) as given:
             liquid("water", 0.0, fill)
@@ -215,6 +220,40 @@ def test_a_liquid_with_several_modes_is_told() -> None:
         liquid("water", 0.0, 0.5)
         liquid("water", 0.0, 0.25, METAL)
         liquid("glycerol", 0.0, 0.4)
+
+
+@pytest.mark.parametrize("fill", [0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4])
+@pytest.mark.parametrize("can_ratio", [0.0, 0.02])
+def test_a_puddle_has_the_better_of_two_loads(fill: float, can_ratio: float) -> None:
+    """A flat tilt that is let go, in two swings of the mode with most of the energy.
+
+    Where the two loads change places, at a fill of 0.22 or so, they are equally good.
+    """
+    can = Can(mass=can_ratio * Load.segment(fill=fill).mass)
+    load = liquid_in("water", 0.0, fill, can).swing.load
+    modes = slosh.rolling(fill, 1 + can_ratio)
+    frequencies = modes.frequencies(can.radius, 9.81)
+    most = frequencies[modes.energy_shares.argmax()]
+    times = np.linspace(0, 2 * math.tau / most, 2001)
+    tilt = np.cos(np.outer(times, frequencies)) @ modes.energy_shares
+
+    def left_out(frequency: float) -> float:
+        return float(np.sqrt(np.mean((np.cos(frequency * times) - tilt) ** 2)))
+
+    ice = Scene(can, Load.segment(fill=fill), 0.0).frequency()
+    sloshes = load.sloshes_in is not None
+    chosen, other = (frequencies[0], ice) if sloshes else (ice, frequencies[0])
+    assert left_out(chosen) < left_out(other)
+
+
+def test_both_loads_are_one_where_they_change_places() -> None:
+    """In a can without mass at a fill of 0.2265."""
+    puddle = liquid_in("water", 0.0, 0.2265).swing
+    above = liquid_in("water", 0.0, 0.2266).swing
+    assert puddle.as_ice
+    assert not above.as_ice
+    assert puddle.load.inertia == pytest.approx(above.load.inertia, rel=5e-3)
+    assert puddle.frequency == pytest.approx(above.frequency, rel=1e-3)
 
 
 @pytest.mark.slow
@@ -260,6 +299,44 @@ def test_a_liquid_that_is_no_lump_at_its_terminal_speed_warns_once(name: str) ->
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         liquid(name, incline=0.0)
+
+
+@pytest.mark.parametrize(("fill", "degrees"), [(0.5, 60), (0.75, 10), (0.995, 10)])
+def test_an_incline_too_steep_to_hold_a_liquid_is_told(fill: float, degrees: float) -> None:
+    """There is no terminal speed then, at which the other reasons are looked for."""
+    reason = "the incline is too steep to hold it, and the can carries it round"
+    message = f"^water as one lump is an order of magnitude only: {reason}$"
+    with pytest.warns(LiquidWarning, match=message):
+        scene = liquid("water", math.radians(degrees), fill)
+    with pytest.raises(NoEquilibriumError):
+        scene.terminal_speed()
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"fill": 1.0}, r"a full can has no free surface: fill must be less than 1, got 1\.0$"),
+        (
+            {"gravity": 0},
+            r"without gravity a liquid does not slosh.* must be more than 0 \[m/s\^2\], got 0$",
+        ),
+        (
+            {"viscosity": 1e-9},
+            r"turbulent, with a Reynolds number of 4\.4e\+09 where 1e\+06 is the limit: .* 1e-09 m",
+        ),
+    ],
+)
+def test_what_is_no_liquid_of_ours_is_refused(given: dict[str, Any], message: str) -> None:
+    with pytest.raises(ParameterError, match=message):
+        liquid("water", **given)
+
+
+def test_a_liquid_says_what_damps_it() -> None:
+    rolls = "damped by thin layers at a slip rate of 128 rad/s"
+    assert str(liquid_in("water")) == f"water: 998.2 kg/m^3, 1e-06 m^2/s, sloshes, {rolls}"
+    on_level_ground = str(liquid_in("honey", 0.0))
+    assert on_level_ground.endswith("swings as ice, damped by creep")
+    assert str(liquid_in("water", 0.0)).endswith("sloshes, damped by swinging")
 
 
 def test_a_run_says_when_its_liquid_is_no_lump_any_more() -> None:

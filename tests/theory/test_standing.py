@@ -146,7 +146,7 @@ def test_a_liquid_that_is_over_damped_does_not_slosh() -> None:
             {"fill": 1.0},
             r"fill must be a fraction between 0 and 1 .*: a full can has no free surface, got 1\.0",
         ),
-        ({"fill": 0.001}, r"height of the liquid over the radius must be between 0\.05 and 50"),
+        ({"fill": 0.001}, r"liquid divided by the radius must be between 0\.05 and 50"),
         ({"can": Can()}, r"a standing can must have mass and inertia, as Can\.sheet_metal\(\)"),
         ({"modes": 6}, r"modes must be one of 0, 1, \.\.\. 5, got 6"),
         ({"liquid": "bear"}, "liquid must be one of .*'beer', .*; got 'bear'$"),

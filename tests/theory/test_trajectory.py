@@ -116,7 +116,7 @@ def slipped(motion: Trajectory, radii: float) -> Trajectory:
         (
             gaining,
             ERROR,
-            "energy or momentum drift like an error of 0.012 rad of phi or u/a "
+            "energy or momentum drifts as with an error of 0.012 rad of phi or u/a "
             "(trusted up to 0.01)",
         ),
         (slipped, SLIP, "the can slips by 0.0012 radii (trusted up to 0.001)"),

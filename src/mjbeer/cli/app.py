@@ -111,7 +111,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         say(f"mjbeer: {message}", "red")
         return 2
     except KeyboardInterrupt as error:
-        say("mjbeer: interrupted; what was written is whole", "red")
+        say("mjbeer: interrupted; every file written is complete", "red")
         (signum,) = error.args or (signal.SIGINT,)
         return 128 + signum
 

@@ -144,7 +144,7 @@ _MODEL = (
     ),
     Option(
         "--integrator",
-        "MuJoCo's or mjbeer's; by default RK4, or what keeps a tolerance",
+        "MuJoCo's or mjbeer's; by default RK4, or mjbeer's choice with a tolerance",
         choices=MUJOCO_INTEGRATORS + MJBEER_INTEGRATORS,
     ),
     Option(

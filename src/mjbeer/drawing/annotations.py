@@ -15,9 +15,11 @@ from mjbeer.model.looks import WALL
 from mjbeer.theory.can import RADIUS
 from mjbeer.theory.trajectory import Trajectory
 
-LONGEST = 1.6
-"""Length of the longest arrow of a force, in radii; that of the weight is 1. Only the blow of a
-landing would be longer."""
+LONGEST = 2.5
+"""Length of the longest arrow of a force, in radii; that of the weight is 1 at most. Only the blow
+of a landing would be longer."""
+_NO_BLOW = 97
+"""Share of the time in which a can that may land feels no blow of a landing [%]."""
 _SHORTEST = 0.05
 """Length of the shortest arrow that is drawn, in radii."""
 _LETTER_DISTANCE = 0.4
@@ -26,6 +28,7 @@ _LETTER_DISTANCE = 0.4
 _RIM = (0.79, 0.12, 0.16)
 _CENTRE = (0.42, 0.21, 0.0)
 _GHOST = (0.25, 0.33, 0.45)
+_RESTING = (0.05, 0.35, 0.62)
 _FILMED = (0.85, 0.0, 0.35)
 _NORMAL = (0.0, 0.45, 0.30)
 _FRICTION = (0.62, 0.20, 0.55)
@@ -51,6 +54,7 @@ LEGENDS: dict[Mark, tuple[Legend, ...]] = {
     "normal": (Legend("→", _NORMAL, "normal force N"),),
     "friction": (Legend("→", _FRICTION, "friction F"),),
     "phi": (),
+    "equilibrium": (Legend("- -", _RESTING, "the beer's surface at the equilibrium"),),
     "measured": (Legend("•", _FILMED, "where the filmed {} was"),),
 }
 """What marks mean, in the order in which they are drawn."""
@@ -88,13 +92,14 @@ class Annotations:
         self._forces = MeanForces(np.zeros(0), np.zeros(0))
         """The lengths of the arrows of forces at the samples, in radii."""
         if "normal" in style.marks or "friction" in style.marks:
-            self._forces = _arrow_lengths(mean_forces(trajectory))
+            self._forces = _arrow_lengths(trajectory)
         draw: dict[Mark, Callable[[_Pen, Position], None]] = {
             "ghost": self._draw_ghost,
             "paths": self._draw_paths,
             "normal": self._draw_normal,
             "friction": self._draw_friction,
             "phi": self._draw_phi,
+            "equilibrium": self._draw_equilibrium,
             "measured": self._draw_measured,
         }
         self._marks = [draw[mark] for mark in LEGENDS if mark in style.marks]
@@ -132,11 +137,9 @@ class Annotations:
         if normal > _SHORTEST:
             length = min(normal, LONGEST)
             foot = self._foot(now)
-            pen.arrow(foot - np.array([0, length]), foot, _NORMAL)
-            # The letter is at the side of the arrow where there is no arrow of friction.
-            aside = 0.36 * self._friction_direction(now)
-            below = max(length, _LETTER_DISTANCE) + 0.1
-            pen.text(foot - np.array([aside, below]), "N", _NORMAL)
+            pen.arrow(foot, foot + np.array([0, length]), _NORMAL)
+            beside = np.array([0.36, max(length, _LETTER_DISTANCE) - 0.2])
+            pen.text(foot + beside, "N", _NORMAL)
 
     def _draw_friction(self, pen: "_Pen", now: Position) -> None:
         friction = abs(self._arrow(self._forces.friction, now))
@@ -178,6 +181,12 @@ class Annotations:
         pen.line(axis + 1.26 * unit_vectors(arc), 0.045, INK)
         pen.text(axis + 1.62 * unit_vectors(start - angle / 2), "φ", INK)
 
+    def _draw_equilibrium(self, pen: "_Pen", now: Position) -> None:
+        """Draw a line through the axis that the beer's surface is parallel to at rest."""
+        along = unit_vectors(math.pi - self._motion.scene.equilibrium())
+        ends = np.array([[-1.42], [1.42]])
+        pen.line(self._axis(now) + ends * along, 0.05, _RESTING, dashes=(3, 2.5))
+
     def _draw_measured(self, pen: "_Pen", now: Position) -> None:
         """Draw about sixty of the measured places, and the latest."""
         assert self._measured is not None
@@ -187,12 +196,15 @@ class Annotations:
             pen.disc(np.array([u / self._radius, 1.0]), 0.08, _FILMED)
 
 
-def _arrow_lengths(forces: MeanForces) -> MeanForces:
-    """Return the lengths of the arrows of forces, in radii.
+def _arrow_lengths(motion: Trajectory) -> MeanForces:
+    """Return the lengths of the arrows of a motion's forces, in radii.
 
-    A weight has the length 1, or less if more than a tenth of the forces were too long then.
+    A weight has the length 1, or less if the forces were too long then, apart from the blow of a
+    landing.
     """
-    large = max(np.percentile(np.hypot(*forces), 90), _SHORTEST)
+    forces = mean_forces(motion)
+    share = _NO_BLOW if motion.rolling == "contact" else 100
+    large = max(np.percentile(np.hypot(*forces), share), _SHORTEST)
     factor = min(1.0, LONGEST / large)
     return MeanForces(factor * forces.normal, factor * forces.friction)
 
@@ -224,8 +236,9 @@ class _Pen:
         self._sheet.line(self._pixel(points), thick, colour, alpha, dashes)
 
     def arrow(self, tail: np.ndarray, tip: np.ndarray, colour: Colour) -> None:
-        width = max(2.0, 0.11 * self._size)
-        self._sheet.arrow(self._pixel(tail), self._pixel(tip), width, colour)
+        """Draw an arrow with a white edge, so that it is seen on anything."""
+        width = max(2.0, 0.12 * self._size)
+        self._sheet.arrow(self._pixel(tail), self._pixel(tip), width, colour, halo=True)
 
     def disc(self, point: np.ndarray, radius: float, colour: Colour) -> None:
         self._sheet.disc(self._pixel(point), max(2.0, radius * self._size), colour)

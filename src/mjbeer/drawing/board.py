@@ -9,6 +9,9 @@ from mjbeer.drawing.camera import View, in_space, scale, unit_vectors
 from mjbeer.drawing.scene import Display
 from mjbeer.drawing.sheet import INK, Box, Sheet, overlap
 
+_ASIDE = 0.28
+"""Distance of the incline's angle from the middle of the picture, in widths of the picture."""
+
 
 class Board:
     """The board of a display, with gravity's arrow, the incline's angle, and distances below it.
@@ -57,7 +60,9 @@ class Board:
         uphill = -math.copysign(1.0, self._scene.incline)  # 1 to the right
         reach = 9 * unit
         lowest = view.top + view.pixels[1] - 2.6 * unit
-        corner = self.pixel(view, self.along(view, sheet.width * (0.5 - 0.1 * uphill)))
+        # Uphill of the middle, where a can and its arrows seldom are, and whole in the picture.
+        aside = min(_ASIDE * sheet.width, sheet.width / 2 - reach - unit)
+        corner = self.pixel(view, self.along(view, sheet.width / 2 + uphill * aside))
         if corner[1] > lowest:  # the board leaves the picture through its lower edge
             corner = corner + (corner[1] - lowest) * np.array([uphill / math.tan(tilt), -1])
         end = corner + np.array([uphill * reach, 0])
@@ -91,7 +96,9 @@ class Board:
 
 
 def _has_room(box: Box, sheet: Sheet, view: View) -> bool:
-    """Return whether a box is inside the picture and free of texts."""
+    """Return whether a box is inside the picture, and free of texts with a gap beside it."""
+    gap = 0.6 * sheet.unit
+    apart = box._replace(left=box.left - gap, right=box.right + gap)
     in_columns = box.left > 0 and box.right < sheet.width
     in_rows = box.top > view.top and box.bottom < view.top + view.pixels[1]
-    return in_columns and in_rows and not any(overlap(box, other) for other in sheet.boxes)
+    return in_columns and in_rows and not any(overlap(apart, other) for other in sheet.boxes)

@@ -18,8 +18,9 @@ the can would be small."""
 CAMERAS: tuple[Camera, ...] = ("auto", "fixed", "pan")
 
 AROUND = 1.9
-"""At least so many radii around the can's axis are seen: the can, the angle of its load, and the
-board."""
+"""At least so many radii around the can's axis are seen: the can and the angle of its load."""
+BELOW = 2.3
+"""At least so many radii below its axis: the board, and what is written under it."""
 _SMALLEST = 0.11
 """Least radius of the can, divided by the picture's height, with which "auto" stands still."""
 
@@ -192,33 +193,31 @@ def follow(
     camera: Camera,
     front: float,
     pixels: tuple[int, int],
-    below: float = AROUND,
 ) -> CameraPath:
     """Return how a camera films a can that moves, in a picture of some `pixels`.
 
-    The can's near end is in the plane y = `front` [m]. At least so many radii `below` its axis are
-    seen.
+    The can's near end is in the plane y = `front` [m].
     """
     u = motion.u * scale(motion.scene)
     half_way = Polynomial([(u.min() + u.max()) / 2])
-    still = _path(motion, half_way, front, pixels, below)
+    still = _path(motion, half_way, front, pixels)
     if camera == "fixed" or len(motion.time) < 3:  # so few places have no acceleration
         return still
     if camera == "auto" and RADIUS / still.metres[1] >= _SMALLEST:
         return still
     parabola = Polynomial.fit(motion.time, u, 2).convert()
-    return _path(motion, parabola, front, pixels, below)
+    return _path(motion, parabola, front, pixels)
 
 
 def _path(
-    motion: Trajectory, along: Polynomial, front: float, pixels: tuple[int, int], below: float
+    motion: Trajectory, along: Polynomial, front: float, pixels: tuple[int, int]
 ) -> CameraPath:
     """Return the path of a camera that is `along` the incline, and just shows the whole motion."""
     scene = motion.scene
     u = motion.u * scale(scene) - along(motion.time)
     height = RADIUS + motion.lift * scale(scene)
     axis = on_incline(scene, u, height)
-    low = axis.min(axis=0) - RADIUS * np.array([AROUND, below])
+    low = axis.min(axis=0) - RADIUS * np.array([AROUND, BELOW])
     high = axis.max(axis=0) + RADIUS * AROUND
     shape = np.array(pixels) / pixels[1]
     metres = ((high - low) / shape).max() * shape

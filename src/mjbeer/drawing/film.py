@@ -11,8 +11,9 @@ import numpy as np
 from mjbeer import require
 from mjbeer.drawing.annotations import Annotations
 from mjbeer.drawing.board import Board
-from mjbeer.drawing.camera import AROUND, Edges, follow
+from mjbeer.drawing.camera import Edges, follow
 from mjbeer.drawing.overlay import (
+    GROUNDS,
     HEADER,
     NOTE,
     STRIP,
@@ -23,7 +24,7 @@ from mjbeer.drawing.overlay import (
 )
 from mjbeer.drawing.scene import Display, Painter, coordinates
 from mjbeer.drawing.sheet import Sheet
-from mjbeer.drawing.strip import ChartStrip, charts
+from mjbeer.drawing.strip import ChartStrip, Stage, charts
 from mjbeer.drawing.style import FilmStyle
 from mjbeer.exceptions import ParameterError
 from mjbeer.theory.trajectory import Trajectory
@@ -33,8 +34,6 @@ _MOST_FRAMES = 1e6
 _READABLE = 24
 """Least width of a picture with charts, in units of the sheet: in a narrower one they cannot be
 read."""
-_UNDER_ARROWS = 3.0
-"""So many radii are seen below the can's axis if forces are drawn, whose arrows come from there."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,19 +124,19 @@ def _pictures(
 
     # The camera keeps the can below the notes; the scene goes on behind them.
     front = display.ends()[0]
-    under = _UNDER_ARROWS if "normal" in style.marks else AROUND
     below_notes = (width, scene_height - for_notes)
-    camera = follow(trajectory, style.camera, front, below_notes, under)
+    camera = follow(trajectory, style.camera, front, below_notes)
     with_notes = Edges(left=0, upper=-for_notes, right=width, lower=scene_height - for_notes)
 
     annotations = Annotations(trajectory, style, front)
-    board = Board(display, float(trajectory.u[0]))
+    board = Board(display, float(trajectory.u[0] - trajectory.distance[0]))
     notes = note_spans(trajectory, style.notes)
     doubts = trajectory.solver_warnings
     strip = None
     if has_charts:
-        marked = next(iter(notes.values()), ())  # when the first note holds
-        strip = ChartStrip(charts(trajectory, style.strips), width, below, marked)
+        stages = [Stage(*stage) for stage in zip(notes.values(), GROUNDS, strict=False)]
+        shown = charts(trajectory, style.strips, "equilibrium" in style.marks, style.mu)
+        strip = ChartStrip(shown, width, below, stages)
 
     with closing(Painter(display, (width, scene_height), camera.still)) as painter:
         for time, now in zip(times, coordinates(trajectory, times), strict=True):

@@ -157,16 +157,24 @@ one that the film names first is shown."""
 
 Spans = list[tuple[float, float]]
 """From when to when [s] something holds."""
+GROUNDS = ((1.0, 0.92, 0.62), (0.80, 0.90, 1.0), (0.85, 0.95, 0.80))
+"""Grounds of a film's first, second and third note, and of the times in its charts."""
 
 
 def note_spans(motion: Trajectory, names: Sequence[str]) -> dict[str, Spans]:
-    """Return from when to when [s] notes hold, by their words."""
+    """Return from when to when [s] notes are shown, by their words.
+
+    A note is shown while it holds and none before it does.
+    """
     called = scene_names(motion.scene)
     lift = 1e3 * motion.lift.max()
     spans: dict[str, Spans] = {}
+    taken = np.zeros(len(motion.time), bool)
     for name in names:
         words = NOTES[name].words.format(body=called.body, load=called.load, lift=lift)
-        spans[words] = _spans(motion.time, NOTES[name].holds(motion))
+        holds = NOTES[name].holds(motion)
+        spans[words] = _spans(motion.time, holds & ~taken)
+        taken |= holds
     return spans
 
 
@@ -191,10 +199,10 @@ def _spans(time: np.ndarray, holds: np.ndarray) -> Spans:
 
 def draw_note(sheet: Sheet, notes: Mapping[str, Spans], time: float, top: int) -> None:
     """Write the first of some notes that holds at a `time` [s] below a row `top`."""
-    for words, spans in notes.items():
+    for (words, spans), ground in zip(notes.items(), GROUNDS, strict=False):
         if any(first <= time <= last for first, last in spans):
             place = np.array([_MARGIN, NOTE / 2]) * sheet.unit + [0, top]
-            sheet.plate(place, [words], INK, (0, 0.5), ground=(1.0, 0.95, 0.72))
+            sheet.plate(place, [words], INK, (0, 0.5), ground=ground)
             return
 
 

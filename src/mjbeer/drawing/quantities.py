@@ -89,7 +89,7 @@ def _mean_rate(time: np.ndarray, values: np.ndarray) -> np.ndarray:
 
 QUANTITIES = {
     "phi": Quantity("angle of the load, φ [°]", lambda motion: wrapped(motion.phi), least=10.0),
-    "u": Quantity("distance [m]", lambda motion: motion.u - motion.u[0]),
+    "u": Quantity("distance [m]", lambda motion: motion.distance),
     "u_dot": Quantity("speed [m/s]", lambda motion: motion.u_dot),
     "ahead": Quantity(
         "ahead of even acceleration [mm]",
@@ -99,7 +99,13 @@ QUANTITIES = {
         "normal force, N [weights]",
         lambda motion: mean_forces(motion).normal,
         low=-1.0,
-        high=4.0,  # the blow of a landing goes beyond
+        high=10.0,  # the blow of a landing goes beyond
+    ),
+    "friction": Quantity(
+        "friction, F [weights]",
+        lambda motion: mean_forces(motion).friction,
+        low=-2.0,
+        high=2.0,
     ),
     "lift": Quantity("height of flight [mm]", lambda motion: 1e3 * motion.lift),
     "slip": Quantity(

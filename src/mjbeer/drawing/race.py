@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
-from mjbeer.drawing.camera import View, in_space, scale
+from mjbeer.drawing.camera import Edges, View, in_space, scale
 from mjbeer.drawing.film import Film, RenderPlan
 from mjbeer.drawing.overlay import HEIGHT, draw_title, draw_warning
 from mjbeer.drawing.scene import Display, Painter, coordinates
@@ -26,8 +26,18 @@ _EYE_DISTANCE = 6.0
 """Distance of the eye from the middle of the race, in its lengths."""
 _EYE = np.array([0.0, -math.cos(0.6), math.sin(0.6)])
 """Direction of the eye: in front of the board, and so high above it that no can hides another."""
-_BEFORE = 0.4
+_BEFORE = 0.3
 """How much of the incline is seen before the start, for the names, in lengths of the race."""
+_CLOSE_UPS = 11.2
+"""Height of the row of close-ups below the picture, in units of the sheet."""
+_TEXTS = 3.5
+"""Height of the two lines above a close-up, in units."""
+_GAP = 0.4
+"""Distance between two close-ups, in units."""
+_SEEN = np.array([-1.22, 1.12])
+"""What is seen in a close-up, from below to above the axis, in radii."""
+_READABLE = 40
+"""Least width of a picture with close-ups, in units."""
 _BEHIND = 1.5 * RADIUS
 """How far behind the axis of its can a plate ends, as drawn [m]."""
 _LATE = 0.4
@@ -46,7 +56,7 @@ class Runner:
     load: tuple[float, float, float] | None = None
     """Colour of what is in it; None keeps that of beer or ice."""
     note: str = ""
-    """What else to know about it, such as "μ = 0.35"; it stands below the name."""
+    """What else to know about it, such as "μ = 0.35"."""
 
     def finish(self, length: float) -> float:
         """Return the time [s] at which the can has come a `length` [m] down the incline.
@@ -79,8 +89,9 @@ class Result(NamedTuple):
 class Race(Film):
     """A film of up to five cans of one radius that are let go together on one incline.
 
-    At the finish, each can's time is written below its name. With `centres` the film is no race:
-    the centres of mass of the loads start at one line, and are marked and joined.
+    At the finish each can is held, and its time is written below its name. Below the picture there
+    is a close-up of each can, where there is room. With `centres` the film is no race: the centres
+    of mass of the loads start at one line, and are marked and joined.
 
     Raises:
       ParameterError: when it is planned, if the cans differ in their radii or inclines.
@@ -131,8 +142,10 @@ class Race(Film):
         sheet = Sheet(width, height)
         top = round(HEIGHT * sheet.unit)
         display = self._display(runners)
-        view = self._view(display, (width, height - top), top)
-        positions = np.stack([runner.positions(times) for runner in runners], axis=1)
+        has_close_ups = not self.centres and width > _READABLE * sheet.unit
+        below = round(_CLOSE_UPS * sheet.unit) if has_close_ups else 0
+        view = self._view(display, (width, height - top - below), top)
+        positions = np.stack([self._positions(runner, times) for runner in runners], axis=1)
         if self.centres:  # the centres of mass start at one line; in a race the axes do
             positions[..., 0] += [runner.trajectory.u[0] for runner in runners]
             results = [Result(math.inf, "")] * len(runners)
@@ -148,14 +161,28 @@ class Race(Film):
             for time, now in zip(times, positions, strict=True):
                 painter.paint(sheet, view, now)
                 draw_title(sheet, self.title, words, time, self.speed)
+                sheet.blank(height - below, height)
                 for lane, (runner, result) in enumerate(zip(runners, results, strict=True)):
                     place = self._plate_place(display, view, lane, now[lane, 0])
-                    lines = _plate_lines(runner, result, time)
+                    said = result.words if time >= result.time else runner.note
+                    lines = [runner.name]
+                    if has_close_ups:
+                        panel = _panel(sheet, lane, len(runners), height - below)
+                        _draw_close_up(painter, display, lane, now[lane], panel, sheet)
+                        _name(sheet, panel, runner, said, is_result=time >= result.time)
+                    elif said:
+                        lines.append(said)
                     sheet.plate(place, lines, runner.colour, (1, 0.5))
                 if self.centres:
                     _join_centres(sheet, view, display, now)
                 draw_warning(sheet, doubts, top)
                 yield sheet.picture()
+
+    def _positions(self, runner: Runner, times: np.ndarray) -> np.ndarray:
+        """Return a can's positions at times [s] as `Runner` has them, held at the finish."""
+        if self.centres:
+            return runner.positions(times)
+        return runner.positions(np.minimum(times, runner.finish(self.length)))
 
     def _display(self, runners: Sequence[Runner]) -> Display:
         scenes = [runner.trajectory.scene for runner in runners]
@@ -176,13 +203,13 @@ class Race(Film):
         points = np.reshape(outlines, (-1, 3))
         distance = _EYE_DISTANCE * self.length * scale(display.scenes[0])
         eye = points.mean(axis=0) + distance * _EYE
-        return View.towards(eye, points, pixels, top, margin=0.01)
+        return View.towards(eye, points, pixels, top, margin=0.03)
 
     def _words(self, display: Display) -> str:
         """Return what holds for all cans."""
         facts = [f"incline {in_degrees(display.scenes[0].incline)}"]
         if not self.centres:
-            facts.insert(0, f"{self.length:g} m")
+            facts = [f"{self.length:g} m", *facts, "each can is held at the finish"]
         if self.facts:
             facts.append(self.facts)
         return ", ".join(facts)
@@ -194,10 +221,45 @@ class Race(Film):
         return view.pixel(in_space(scene, along, 0.0, display.lanes[lane]))
 
 
-def _plate_lines(runner: Runner, result: Result, time: float) -> list[str]:
-    """Return the lines of a can's plate at a time [s]: its name, and its note or its result."""
-    below = result.words if time >= result.time else runner.note
-    return [runner.name, below] if below else [runner.name]
+def _panel(sheet: Sheet, lane: int, count: int, top: int) -> Edges:
+    """Return where the close-up of the can in a lane is, below a row `top`, without its texts."""
+    gap = _GAP * sheet.unit
+    width = (sheet.width - gap) / count
+    left = gap + lane * width
+    upper = top + _TEXTS * sheet.unit
+    lower = sheet.height - gap
+    return Edges(round(left), round(upper), round(left + width - gap), round(lower))
+
+
+def _draw_close_up(
+    painter: Painter,
+    display: Display,
+    lane: int,
+    position: np.ndarray,
+    panel: Edges,
+    sheet: Sheet,
+) -> None:
+    """Draw the near end of a can, which a `painter` has put at a position, into a panel."""
+    pixels = (panel.right - panel.left, panel.lower - panel.upper)
+    near, _ = display.ends(lane)
+    scene = display.scenes[lane]
+    u, lift = position[[0, 3]] * scale(scene)
+    centre = in_space(scene, u, RADIUS + lift, near)
+    centre[2] += _SEEN.mean() * RADIUS
+    height = np.ptp(_SEEN) * RADIUS
+    view = View.facing(centre, np.array([height * pixels[0] / pixels[1], height]), pixels)
+    small = Sheet(*pixels)
+    painter.paint_end(small, view, lane, position)
+    sheet.composite(small.part(0, pixels[1]), panel.left, panel.upper)
+
+
+def _name(sheet: Sheet, panel: Edges, runner: Runner, said: str, is_result: bool) -> None:
+    """Write a can's name, and what is said of it, above its close-up."""
+    unit = sheet.unit
+    place = np.array([panel.left, panel.upper - 0.7 * _TEXTS * unit])
+    sheet.text(place, runner.name, 1.15 * unit, runner.colour, bold=True)
+    place = np.array([panel.left, panel.upper - 0.26 * _TEXTS * unit])
+    sheet.text(place, said, 1.15 * unit, bold=is_result)
 
 
 def _check_equal_terms(runners: Sequence[Runner]) -> None:

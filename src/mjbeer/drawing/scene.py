@@ -221,10 +221,20 @@ class Painter:
         for outline in outlines:
             self._display.scenery.shade(sheet, view, outline)
         for number in reversed(range(len(outlines))):  # the nearest comes last
-            edges = view.edges(outlines[number], margin=3)
-            if edges.right > edges.left and edges.lower > edges.upper:
-                can = self._draw(view.crop(edges), number)
-                sheet.composite(can, edges.left, view.top + edges.upper)
+            self._lay(sheet, view, number, outlines[number])
+
+    def paint_end(self, sheet: Sheet, view: View, number: int, position: np.ndarray) -> None:
+        """Draw the near end of a can on a small sheet; a `paint` has put it at its position."""
+        near, _ = self._display.ends(number)
+        self._display.scenery.draw_slice(sheet, view, near)
+        self._lay(sheet, view, number, self._display.outline(number, position))
+
+    def _lay(self, sheet: Sheet, view: View, number: int, outline: np.ndarray) -> None:
+        """Lay a can with an outline on a sheet."""
+        edges = view.edges(outline, margin=3)
+        if edges.right > edges.left and edges.lower > edges.upper:
+            can = self._draw(view.crop(edges), number)
+            sheet.composite(can, edges.left, view.top + edges.upper)
 
     def _draw(self, view: View, number: int) -> np.ndarray:
         """Return the picture of a can in a view, shape (height, width, 4), uint8.

@@ -99,6 +99,18 @@ class Scenery:
         sheet.area(view.pixel(ground), self.lit(_PALE, face.normal, view))
         sheet.area(view.pixel(dark), self.lit(_DARK, face.normal, view))
 
+    def draw_slice(self, sheet: Sheet, view: View, y: float) -> None:
+        """Draw a wall, and before it the front of the board as if that were in the plane at `y`."""
+        board = self._model.geom("board")
+        corners = view.corners(y)
+        along = corners @ on_incline(self._scene, 1.0, 0.0)
+        numbers = np.arange(along.min() // _STRIPE, along.max() // _STRIPE + 1)
+        edge = in_space(self._scene, 0.0, board.pos[2] + board.size[2], y)
+        under = in_space(self._scene, 0.0, board.pos[2] - board.size[2], y)
+        front = _Face(self._scene, edge, under, _NEAR)
+        sheet.area(view.pixel(np.insert(corners, 1, y, axis=1)), self.lit(_WALL, _NEAR, view))
+        self._draw_stripes(sheet, view, front, numbers)
+
     def shade(self, sheet: Sheet, view: View, outline: np.ndarray) -> None:
         """Draw a can's shadow on the board.
 

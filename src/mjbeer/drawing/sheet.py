@@ -133,8 +133,18 @@ class Sheet:
         shape = Affine2D().scale(radius).translate(*place) + self._flip
         self._renderer.draw_path(pen, Path.unit_circle(), shape, to_rgba(colour))
 
-    def arrow(self, tail: np.ndarray, tip: np.ndarray, width: float, colour: Colour) -> None:
-        """Draw an arrow. One that would be shorter than its head is made smaller as a whole."""
+    def arrow(
+        self,
+        tail: np.ndarray,
+        tip: np.ndarray,
+        width: float,
+        colour: Colour,
+        halo: bool = False,
+    ) -> None:
+        """Draw an arrow. One that would be shorter than its head is made smaller as a whole.
+
+        With a `halo` it has a white edge.
+        """
         along = np.asarray(tip) - tail
         length = float(np.hypot(*along))
         if length < 1:
@@ -148,7 +158,10 @@ class Sheet:
             head_width=3 * width,
             head_length=_HEAD * width,
         )
-        self.area(np.asarray(shape.get_xy()), colour)
+        outline = np.asarray(shape.get_xy())
+        if halo:
+            self.line(outline, width / 2, "white")
+        self.area(outline, colour)
 
     def text(
         self,

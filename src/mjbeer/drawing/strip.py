@@ -3,8 +3,8 @@
 import contextlib
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib import rc_context
@@ -14,16 +14,18 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.transforms import BboxBase, Transform
 
-from mjbeer.drawing.quantities import INTERVALS, QUANTITIES
-from mjbeer.drawing.sheet import Colour, Sheet
+from mjbeer.drawing.quantities import INTERVALS, QUANTITIES, mean_forces
+from mjbeer.drawing.sheet import INK, Colour, Sheet
 from mjbeer.exceptions import MjbeerError
 from mjbeer.output.plots import COLOURS, STYLE
 from mjbeer.theory.trajectory import Trajectory, exact_motion
 
 _THEORY = "#b4bcc8"
 """Colour of theory's lines, which are wide and lie below the others."""
-_MARKED = "#fff1b8"
-"""Ground of the times at which something happens."""
+_MOST_OF_A_TURN = 270.0
+"""Range of an angle [degrees] from which on its chart shows a whole turn."""
+_LITTLE = 0.08
+"""So much of the range of the values may lie beyond the round value at an end of the axis."""
 _LETTERS = 1.15
 """Height of the letters, in units: tenths of the strip's height."""
 
@@ -38,7 +40,9 @@ class Line:
     values: np.ndarray
     """Values at these times."""
     colour: Colour | None = None
-    """None is for theory's line, which is seen from the beginning."""
+    """None is for a line that is seen from the beginning, such as theory's."""
+    thin: bool = False
+    """Whether such a line is thin and dashed: a value that is not a motion's."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,11 +59,67 @@ class Chart:
     least: float = 0.0
     """Least range of values that it shows: a straight line must not look like a crooked one."""
 
+    def ticks(self) -> np.ndarray:
+        """Return round values from the least to the largest that the chart shows, two to four."""
+        values = np.concatenate([line.values[np.isfinite(line.values)] for line in self.lines])
+        low = max(float(values.min()), self.low)
+        high = min(float(values.max()), self.high)
+        room = max(0.0, self.least - (high - low)) / 2
+        if high - low > _MOST_OF_A_TURN and self.title.endswith("[°]"):
+            return np.array([-180.0, 0.0, 180.0])
+        little = _LITTLE * (high - low)
+        return _round_values(low - room + little, high + room - little)
 
-def charts(trajectory: Trajectory, names: Sequence[str]) -> list[Chart]:
-    """Return charts of the quantities of these names in QUANTITIES, with theory's lines."""
+
+def _round_values(low: float, high: float) -> np.ndarray:
+    """Return two to four successive multiples of 1, 2, 3 or 5 times a power of ten.
+
+    They reach from `low` or below to `high` or beyond.
+    """
+    if high == low:
+        high = low + 1
+    power = 10.0 ** math.floor(math.log10((high - low) / 3))
+    for factor in (1, 2, 3, 5, 10, 20):
+        step = factor * power
+        first = math.floor(low / step)
+        last = max(math.ceil(high / step), first + 1)
+        if last - first <= 3:
+            break
+    return step * np.arange(first, last + 1)
+
+
+class Stage(NamedTuple):
+    """Times at which something happens, and the ground that they have in the charts."""
+
+    spans: Sequence[tuple[float, float]]
+    """From when to when [s] it happens."""
+    ground: Colour
+
+
+def charts(
+    trajectory: Trajectory,
+    names: Sequence[str],
+    equilibrium: bool = False,
+    mu: float | None = None,
+) -> list[Chart]:
+    """Return charts of the quantities of these names in QUANTITIES, with theory's lines.
+
+    The chart of phi can show its `equilibrium`, and that of friction how much a friction
+    coefficient `mu` allows.
+    """
     theory = _theory(trajectory)
-    return [_chart(trajectory, theory, name) for name in names]
+    shown = [_chart(trajectory, theory, name) for name in names]
+    if equilibrium and "phi" in names:
+        rest = np.full(2, math.degrees(trajectory.scene.equilibrium()))
+        line = Line("equilibrium", trajectory.time[[0, -1]], rest, thin=True)
+        place = names.index("phi")
+        shown[place] = replace(shown[place], lines=[*shown[place].lines, line])
+    if mu is not None and "friction" in names:
+        most = mu * mean_forces(trajectory).normal
+        limits = [Line("μN and −μN", trajectory.time, sign * most, COLOURS[1]) for sign in (1, -1)]
+        place = names.index("friction")
+        shown[place] = replace(shown[place], lines=[*limits, *shown[place].lines])
+    return shown
 
 
 def _chart(trajectory: Trajectory, theory: Trajectory | None, name: str) -> Chart:
@@ -71,9 +131,10 @@ def _chart(trajectory: Trajectory, theory: Trajectory | None, name: str) -> Char
         rolls = _rolls(theory)
         lines.append(Line("theory", theory.time[rolls], quantity.values(theory)[rolls]))
     title = quantity.title
-    if name == "normal" and trajectory.rolling == "contact":
+    if name in ("normal", "friction") and trajectory.rolling == "contact":
         window = np.ptp(trajectory.time) / INTERVALS
-        title = f"N [weights], {1e3 * window:.2g} ms means"
+        letter = name[0].upper()
+        title = f"{letter} [weights], {1e3 * window:.2g} ms means"
     if values.max() > quantity.high:
         title += f", up to {values.max():.0f}"
     return Chart(title, lines, quantity.low, quantity.high, quantity.least)
@@ -111,9 +172,9 @@ class ChartStrip:
         charts: Sequence[Chart],
         width: int,
         height: int,
-        marked: Sequence[tuple[float, float]] = (),
+        stages: Sequence[Stage] = (),
     ) -> None:
-        """Prepare to draw charts of so many pixels, in which some spans of time [s] are `marked`.
+        """Prepare to draw charts of so many pixels, with the grounds of some `stages`.
 
         All is drawn twice, at the beginning and at the end of the film. A picture takes what is to
         the left of its time from the second.
@@ -135,10 +196,11 @@ class ChartStrip:
             panels = self._make_panels(figure, letters)
             growing = []
             for panel, chart in zip(panels, charts, strict=True):
-                for first, last in marked:
-                    panel.axvspan(first, last, color=_MARKED, linewidth=0)
+                for stage in stages:
+                    for first, last in stage.spans:
+                        panel.axvspan(first, last, color=stage.ground, linewidth=0)
                 growing += self._draw_panel(panel, chart)
-            self._add_key(figure, panels[0])
+            self._add_key(figure, panels)
             canvas.draw()
             self._beginning = np.array(canvas.buffer_rgba())
             for line in growing:
@@ -169,9 +231,10 @@ class ChartStrip:
             panel.plot(
                 line.time,
                 unbroken(line.values),
-                color=line.colour or _THEORY,
+                color=line.colour or (INK if line.thin else _THEORY),
                 animated=line.colour is not None,
-                linewidth=(0.18 if line.colour else 0.5) * unit,
+                linewidth=(0.18 if line.colour or line.thin else 0.5) * unit,
+                linestyle="--" if line.thin else "-",
                 label=line.name,
             )
         panel.set_title(chart.title, pad=0.45 * unit)
@@ -179,16 +242,20 @@ class ChartStrip:
         start = min(line.time[0] for line in chart.lines)
         end = max(line.time[-1] for line in chart.lines)
         panel.set_xlim(start, end)
-        low, high = panel.get_ylim()
-        room = max(0.0, chart.least - (high - low)) / 2
-        panel.set_ylim(max(low - room, chart.low), min(high + room, chart.high))
+        ticks = chart.ticks()
+        margin = 1.5 * _LITTLE * np.ptp(ticks)  # more than goes beyond the last of them
+        panel.set_yticks(ticks)
+        panel.set_ylim(ticks[0] - margin, ticks[-1] + margin)
+        panel.yaxis.set_major_formatter(lambda value, _: f"{value:g}".replace("-", "\u2212"))
         panel.tick_params(pad=0.25 * unit, length=0.3 * unit)
         return [line for line in panel.lines if line.get_animated()]
 
-    def _add_key(self, figure: Figure, panel: Axes) -> None:
-        """Name the lines of a panel below the charts, unless they have one name."""
-        handles, names = panel.get_legend_handles_labels()
-        named = dict(zip(names, handles, strict=True))
+    def _add_key(self, figure: Figure, panels: Sequence[Axes]) -> None:
+        """Name the lines of the panels below the charts, unless they have one name."""
+        named = {}
+        for panel in panels:
+            handles, names = panel.get_legend_handles_labels()
+            named |= dict(zip(names, handles, strict=True))
         if len(named) > 1:
             figure.legend(
                 named.values(),

@@ -10,12 +10,12 @@ from mjbeer.model import looks
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
 
-Mark = Literal["ghost", "paths", "normal", "friction", "phi", "measured"]
+Mark = Literal["ghost", "paths", "normal", "friction", "phi", "equilibrium", "measured"]
 """What can be drawn to explain a motion.
 
 ghost: a can that accelerates evenly. paths: those of a point on the rim and of the load's centre of
-mass. normal: the normal force N. friction: the friction F. phi: the angle of the load. measured:
-where a filmed axis has been so far.
+mass. normal: the normal force N. friction: the friction F. phi: the angle of the load.
+equilibrium: that angle in the equilibrium. measured: where a filmed axis has been so far.
 """
 
 
@@ -57,7 +57,9 @@ class FilmStyle:
     camera: Camera = "auto"
     """How the camera moves."""
     notes: tuple[str, ...] = ()
-    """What is said while it happens; the charts show when the first of them holds."""
+    """What is said while it happens; the charts show when each of them holds."""
+    mu: float | None = None
+    """Friction coefficient whose limits are in the chart of the friction."""
     measured: np.ndarray | None = None
     """Times [s] and places u [m] of a filmed axis, shape (points, 2)."""
 

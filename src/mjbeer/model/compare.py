@@ -41,7 +41,7 @@ def model_fault(
     difference = np.abs(found - expected)
     if not np.all(difference <= _ALLOWED * _rounding(scene, setting.rolling, probes, size)):
         by = f"{difference.max():.3g} rad/s^2 (of {size:.3g})"
-        return f"accelerates phi by up to {by} otherwise than theory"
+        return f"gives phi an acceleration that differs from theory by up to {by}"
     if equations.warned:
         return "makes MuJoCo warn of a state of rolling"
     return None
@@ -136,7 +136,7 @@ def _constraint_fault(model: mujoco.MjModel, data: mujoco.MjData, rolling: Rolli
         pair = model.pair("rolling")
         rolling_geoms = {int(pair.geom1[0]), int(pair.geom2[0])}
         if not rolling_geoms.issuperset(data.contact.geom.ravel().tolist()):
-            return "lets other geoms touch than the can and the incline"
+            return "lets geoms touch other than the can and the incline"
     return None
 
 

@@ -7,7 +7,7 @@ import xml.etree.ElementTree as ET
 import mujoco
 
 from mjbeer import require
-from mjbeer.exceptions import TemplateError
+from mjbeer.exceptions import ParameterError, TemplateError
 from mjbeer.model import looks, mjcf_file
 from mjbeer.model.free_numbers import lying_parameters, standing_parameters
 from mjbeer.model.mjcf_file import Parameters
@@ -35,9 +35,11 @@ def standing_spec(can: Standing, setting: Setting, visuals: bool, free: bool) ->
 
 def attached_spec(can: Standing | Scene, visuals: bool = True) -> mujoco.MjSpec:
     """Return the specification of a can that is to be attached, without a free joint."""
-    if not isinstance(can, Scene):
-        require.instance("can", can, Standing)
+    if isinstance(can, Standing):
         return standing_spec(can, Setting(), visuals, free=False)
+    if not isinstance(can, Scene):
+        got = require.format_value(can)
+        raise ParameterError(f"can must be a Standing or a Scene, got {got}")
     root, path = _read_mechanics("lying", Setting().folder)
     mjcf_file.remove(root, "freejoint")
     if can.attachment == "frozen":

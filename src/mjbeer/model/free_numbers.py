@@ -162,7 +162,7 @@ def lying_parameters(scene: Scene) -> Parameters:
     if liquid.sloshes_in is not None:
         # Across the axis the liquid sloshes, which gives the sum xx + zz alone. Halved, it leaves
         # no moment of inertia larger than the sum of the other two, which MuJoCo would refuse. With
-        # that of ice the moment about z would be up to 19 % larger in a can of 33 x 120 mm.
+        # that of ice the moment about z would be up to 23 % larger in a can of 33 x 120 mm.
         xx = liquid.inertia / 2
     zz = liquid.inertia - xx
     yy = liquid.mass * shell.length**2 / 12

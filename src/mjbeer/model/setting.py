@@ -74,7 +74,7 @@ class Setting:
             )
         if self.tolerance is not None and self.rolling == "contact":
             raise ParameterError(
-                "a contact is soft, which no tolerance covers: "
+                "a contact is soft, and no tolerance covers this error: "
                 "rolling must be 'reduced' or 'equality' with one, "
                 f"got 'contact' and {self.tolerance!r} rad; "
                 "take a short timestep, and see error_estimate"
@@ -89,7 +89,7 @@ class Setting:
         setting = cls(integrator=integrator, tolerance=tolerance, **fields)
         if tolerance is not None:
             raise ParameterError(
-                "a tolerance chooses the integrator itself: give one of both, "
+                "with a tolerance mjbeer chooses the integrator: give only one of the two, "
                 f"got {integrator!r} too"
             )
         return setting

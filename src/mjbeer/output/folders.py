@@ -55,7 +55,7 @@ def _claim(folder: pathlib.Path, command: str) -> None:
         owner = marker.read_text(encoding="utf-8").strip()
         if owner != command:
             advice = "name another folder, or remove this one"
-            raise OutputError(f"cannot write to {folder}: it is of `{owner}`: {advice}")
+            raise OutputError(f"cannot write to {folder}: it belongs to `{owner}`: {advice}")
     elif names:
         others = ", ".join(names[:_NAMED])
         if len(names) > _NAMED:

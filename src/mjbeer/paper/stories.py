@@ -84,7 +84,7 @@ STORIES = (
         PlotSize(2, 1, 6, 6.2),
         story_plots.draw_trivial,
         Race(
-            "One beer swings, one does not: their centres of mass stay abreast",
+            "One beer swings: the centres of mass stay abreast",
             _let_go,
             length=0.36,
             duration=0.65,
@@ -100,19 +100,9 @@ STORIES = (
         "The can hesitates once in every swing of the beer. Its distance less ½ g sin α t² is b "
         "sin φ, and swings with the beer. Eq. (25) as printed has b cos φ instead, which is a "
         "smaller ripple at twice the frequency. It is drawn without its constant, and from the "
-        "same start.",
+        "same start. The film sliding shows such a can.",
         PlotSize(1, 1, 6, 4.4),
         story_plots.draw_hesitation,
-        MotionFilm(
-            story_plots.HESITATION,
-            speed=0.1,
-            style=FilmStyle(
-                "A can hesitates in every swing of its beer",
-                ("u_dot", "ahead"),
-                ("phi", "ghost"),
-                notes=("hesitates",),
-            ),
-        ),
     ),
     Story(
         "looping",
@@ -133,6 +123,7 @@ STORIES = (
                 "Beer that loops in its can all but lifts it",
                 ("normal", "phi"),
                 ("phi", "normal"),
+                "pan",
                 notes=("light", "heavy"),
             ),
         ),
@@ -150,7 +141,9 @@ STORIES = (
             story_plots.ROCKING,
             speed=0.5,
             style=FilmStyle(
-                "Frozen beer, let go below: it rocks and stays", ("phi", "u"), ("phi", "paths")
+                "Frozen beer, let go below: it rocks and stays",
+                ("phi", "u"),
+                ("phi", "paths", "equilibrium"),
             ),
         ),
     ),
@@ -172,7 +165,8 @@ STORIES = (
         "A half-full can is let go with its frozen beer on top, on an incline with μ = 1. Rolling "
         "needs more and more friction. At 0.72 s it needs more than there is, and the can slips by "
         "less than a millimetre. At 0.83 s the can begins to slip far, and then it hops, 7 mm "
-        "high.",
+        "high. The film begins after 0.68 s, 0.4 m below the start; its chart has the friction F "
+        "between the limits μN and −μN.",
         PlotSize(2, 1, 6, 6.2),
         story_plots.draw_slip_and_hop,
         MotionFilm(
@@ -181,10 +175,11 @@ STORIES = (
             still=0.9,
             style=FilmStyle(
                 "With μ = 1, frozen beer slips before it hops",
-                ("lift", "slip"),
-                ("paths",),
+                ("friction", "slip"),
+                ("paths", "normal", "friction"),
                 "pan",
                 ("flies", "slips"),
+                mu=story_plots.FRICTION,
             ),
         ),
     ),

@@ -25,8 +25,9 @@ LENGTH = 1.0
 _GENTLE = math.radians(5)
 """Incline of the race of beer [rad], on which the frozen can stays on the board."""
 _STEEPER = math.radians(7.1)
-"""Incline of the race of liquids [rad]: let go with a level surface, ice rolls over the top from
-6.93 degrees on, and honey, the thickest of the liquids, from 7.38."""
+"""Incline of the race of liquids [rad].
+
+Let go with a level surface, ice rolls over the top from 6.93 degrees on, and honey from 7.38."""
 _FILL = 0.75
 """How full the cans are that are neither full nor empty."""
 _ICE = 917.0
@@ -65,16 +66,21 @@ def of_beer() -> Sequence[Runner]:
             "beer slides",
             _race(slides, 30),
             colour=(0.75, 0.38, 0.0),
-            note="¾ full, starts at φ = 30°",
+            note="¾ full, from φ = 30°",
         ),
         Runner(
             "beer frozen",
             _race(is_frozen, 180),
             colour=(0.15, 0.42, 0.72),
-            note="¾ full, starts upside down",
+            note="¾ full, upside down",
         ),
         Runner("beer frozen, full", _race(is_full, 0), colour=(0.40, 0.25, 0.60)),
-        Runner("empty", _race(is_empty, 0), colour=(0.30, 0.33, 0.37)),
+        Runner(
+            "empty",
+            _race(is_empty, 0),
+            colour=(0.30, 0.33, 0.37),
+            load=(0.45, 0.46, 0.47),  # as the inside of the can, to be no more seen than it weighs
+        ),
     ]
 
 
@@ -129,13 +135,14 @@ FILMS: dict[str, Film] = {
         duration=2.3,
         speed=0.25,
         still=1.4,
-        caption="Four equal cans race over one metre on an incline of 5 degrees. The can whose "
-        "beer slides wins: its beer swings to and fro by 30 degrees but does not turn with the "
-        "can, so that almost nothing is spent on turning. Frozen beer must turn with its can: the "
-        "full can is as slow as a solid cylinder, with two thirds of the winner's acceleration. "
-        "The frozen can that is three quarters full starts with its beer on top, for else it would "
-        "stay where it is; its lead of two centimetres is gone before half-way. The empty can "
-        "comes last, since most of its mass is in its wall.",
+        caption="Four equal cans race over one metre on an incline of 5 degrees, and each is held "
+        "at the finish; below is the near end of each. The can whose beer slides wins: its beer "
+        "swings to and fro by 30 degrees but does not turn with the can, so that almost nothing "
+        "is spent on turning. Frozen beer must turn with its can: the full can is as slow as a "
+        "solid cylinder, with two thirds of the winner's acceleration. The frozen can that is "
+        "three quarters full starts with its beer on top, for else it would stay where it is; its "
+        "lead of two centimetres is gone before half-way. The empty can comes last, since most of "
+        "its mass is in its wall.",
     ),
     "liquids": Race(
         "Water, oil, honey or ice: which can wins, and which is last?",
@@ -146,15 +153,15 @@ FILMS: dict[str, Film] = {
         speed=1 / 3,
         still=2.2,
         caption="Predict first, then look. Four equal cans, three quarters full, are let go "
-        "together on an incline of 7.1°, each with its surface level. Water hardly rubs against "
-        "its can, and ice turns with it. Water wins after 1.33 s, and oil follows after 1.63 s. "
-        "The ice hesitates with its load nearly on top, rolls over, and finishes after 2.32 s. The "
-        "honey is last: when the ice arrives it has come 15 cm, and it needs 21.47 s. It neither "
-        "slides freely nor turns with its can, and as it rubs it takes all that the incline gives: "
-        "it creeps with 4.5 cm/s. Each liquid is one lump here, and the times are this model's: "
-        "real water and oil are soon so fast that they need not stay at the bottom, and of real "
-        "honey the wall carries up to 30 % round with it. With half or twice the viscosity honey "
-        "is last as well.",
+        "together on an incline of 7.1°, each with its surface level; below is the near end of "
+        "each. Water hardly rubs against its can, and ice turns with it. Water wins after 1.33 s, "
+        "and oil follows after 1.63 s. The ice hesitates with its load nearly on top, rolls over, "
+        "and finishes after 2.32 s. The honey is last: when the ice arrives it has come 15 cm, "
+        "and it needs 21.47 s. It neither slides freely nor turns with its can, and as it rubs it "
+        "takes all that the incline gives: it creeps with 4.5 cm/s. Each liquid is one lump here, "
+        "and the times are this model's: real water and oil are soon so fast that they need not "
+        "stay at the bottom, and while real honey creeps, the wall can carry 30 % of it round. "
+        "With half or twice the viscosity honey is last as well.",
     ),
     "sliding": MotionFilm(
         partial(simulate, sliding(can=METAL), 1.2, math.radians(60), tolerance=1e-9),
@@ -168,13 +175,16 @@ FILMS: dict[str, Film] = {
     "frozen": MotionFilm(
         partial(simulate, frozen(), 0.82, math.pi, tolerance=1e-9),
         speed=0.2,
-        caption="Frozen beer is let go on top, and rolls down ever faster, in jerks. The film ends "
+        caption="Frozen beer is let go on top, and rolls down ever faster, in jerks. N and F are "
+        "the forces of the incline on the can, which start where they act. Whenever the beer goes "
+        "through below, N is more than twice the weight, and in between it is less. The film ends "
         "just before the can would leave the incline.",
         still=0.55,
         style=FilmStyle(
             "Frozen beer rolls down in jerks",
             strips=("normal", "u"),
             marks=("paths", "normal", "friction"),
+            camera="pan",
             notes=("heavy", "light"),
         ),
     ),
@@ -182,8 +192,8 @@ FILMS: dict[str, Film] = {
         partial(simulate, pendulum(), 1.5, math.radians(60), tolerance=1e-9),
         speed=0.25,
         caption="The wheel goes to and fro about the dashed one, which accelerates evenly: it "
-        "hesitates whenever its bob is uphill, and runs ahead whenever it is downhill, for nothing "
-        "but their weight drives them together.",
+        "hesitates whenever its bob is uphill, and runs ahead whenever it is downhill, for "
+        "nothing but their weight drives them together.",
         still=0.4,
         style=_hesitating("A pendulum in a wheel: does the wheel roll evenly?"),
     ),
@@ -193,8 +203,9 @@ FILMS: dict[str, Film] = {
         caption="A hoop of 60 g with a bar of 200 g on its rim is pushed on ice (μ = 0.01), with "
         "the bar in front, and turns at 1700° per second. As the bar goes through below, the hoop "
         "presses on the ice with 9.4 times the weight of both. After 0.10 s the bar comes up "
-        "behind and lifts the hoop, which flies 34 mm high: about its radius. The film ends just "
-        "before the landing.",
+        "behind and lifts the hoop, which flies 34 mm high: about its radius. The charts shade "
+        "when the bar presses, when it pulls, and when the hoop flies. The film ends just before "
+        "the landing.",
         still=0.2,
         style=FilmStyle(
             "Why does a hoop fly? The bar on its rim lifts it",

@@ -1,13 +1,12 @@
 """The report: one page that opens from the disk and loads nothing from elsewhere.
 
-Beside the page lie more maps and a race to play.
+Beside the page lie each film as a file, more maps, and a race to play.
 """
 
 import base64
 import html
 import pathlib
 import re
-import tempfile
 from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -113,7 +112,7 @@ class _Stability(NamedTuple):
 
 
 def write(folder: pathlib.Path, quick: bool, console: Console) -> tuple[Validation, str]:
-    """Write index.html, live.html and the maps that lie beside them into a folder.
+    """Write index.html, live.html, the films and the maps that lie beside them into a folder.
 
     A `quick` report has smaller films, and stories with plots alone. Where OpenGL does not work,
     there are no films. Return the validation, and the line that says which films are missing, or
@@ -123,28 +122,27 @@ def write(folder: pathlib.Path, quick: bool, console: Console) -> tuple[Validati
       OutputError: if the folder cannot be written to.
       RenderingError: if a film cannot be drawn for another reason.
     """
-    with tempfile.TemporaryDirectory() as work:
-        film_jobs = films.film_jobs(pathlib.Path(work), quick)
-        not_drawn = ""
-        if opengl.problem():
-            not_drawn = opengl.missing_films_message([job.path.stem for job in film_jobs])
-            film_jobs = []
-        # The checks come first: they take longest, and compile what the films run.
-        checks = Job("the checks", partial(validate, None))
-        drawings = [Job(job.path.name, job.write) for job in (*film_jobs, *plot_jobs(folder))]
-        validation, *drawn = jobs.run_jobs([checks, *drawings], console)
-        stills = drawn[: len(film_jobs)]
-        plots = drawn[len(film_jobs) :]
-        shown_films = {
-            job.path.stem: ShownFilm(job.path.read_bytes(), still)
-            for job, still in zip(film_jobs, stills, strict=True)
-        }
-        # A plot that went into a file of its own is None here.
-        pictures = {plot.name: plot for plot in plots if plot}
-        live = _LIVE_OF_WHEEL if _LIVE_OF_WHEEL.is_file() else _LIVE_OF_CHECKOUT
-        files.write(folder / "live.html", live.read_text(encoding="utf-8"))
-        text = page(validation, shown_films, pictures, quick, not_drawn)
-        files.write(folder / "index.html", text)
+    film_jobs = films.film_jobs(folder, quick)
+    not_drawn = ""
+    if opengl.problem():
+        not_drawn = opengl.missing_films_message([job.path.stem for job in film_jobs])
+        film_jobs = []
+    # The checks come first: they take longest, and compile what the films run.
+    checks = Job("the checks", partial(validate, None))
+    drawings = [Job(job.path.name, job.write) for job in (*film_jobs, *plot_jobs(folder))]
+    validation, *drawn = jobs.run_jobs([checks, *drawings], console)
+    stills = drawn[: len(film_jobs)]
+    plots = drawn[len(film_jobs) :]
+    shown_films = {
+        job.path.stem: ShownFilm(job.path.read_bytes(), still)
+        for job, still in zip(film_jobs, stills, strict=True)
+    }
+    # A plot that went into a file of its own is None here.
+    pictures = {plot.name: plot for plot in plots if plot}
+    live = _LIVE_OF_WHEEL if _LIVE_OF_WHEEL.is_file() else _LIVE_OF_CHECKOUT
+    files.write(folder / "live.html", live.read_text(encoding="utf-8"))
+    text = page(validation, shown_films, pictures, quick, not_drawn)
+    files.write(folder / "index.html", text)
     return validation, not_drawn
 
 

@@ -76,7 +76,7 @@ def simulate(
     Raises:
       ParameterError: if a parameter is not allowed.
       UnsupportedError: if MuJoCo cannot represent such a model.
-      TemplateError: if the MJCF is missing, lacks an element, or moves otherwise than theory says.
+      TemplateError: if the MJCF is missing, lacks an element, or does not move as theory says.
       DivergenceError: if the motion stops being finite, or the timestep is too long for the method.
       ToleranceError: if the tolerance is not reached.
     """

@@ -29,8 +29,7 @@ SMALLEST = 1e-12
 EVALUATIONS = 2_000_000
 """Largest number of evaluations of the accelerations in all runs of a method: some seconds."""
 _STABLE_STEP = 6.4
-"""Longest step with which DOP853 is stable, divided by the time in which damping brings can and
-load together."""
+"""Longest step with which DOP853 is stable, times the rate at which slip decays."""
 _STEP_EVALUATIONS = 12
 """Evaluations in a step of DOP853."""
 
@@ -142,7 +141,6 @@ def _refuse_stiff(scene: Scene, duration: float, tolerance: float) -> None:
     if rate * duration > _STABLE_STEP * most_steps:
         raise not_reached(
             tolerance,
-            f"damping brings can and load together {rate:.2g} times a second, and steps as short "
-            f"as that would be too many over {duration:.6g} s; "
-            'integrator="implicitfast" has longer ones, and a frozen load is the limit',
+            f"slip decays at {rate:.2g}/s, so that {duration:.6g} s would take too many steps; "
+            'integrator="implicitfast" takes longer ones, and a frozen load is the limit',
         )

@@ -19,6 +19,7 @@ from mjbeer.model.build import build
 from mjbeer.output.terminal import Table
 from mjbeer.studies import can_test, stored_tables
 from mjbeer.studies.can_test import Case, Errors, Motion
+from mjbeer.studies.engines.engine_tables import number
 from mjbeer.theory import soft_contact
 from mjbeer.theory.paper_scenes import frozen
 from mjbeer.theory.scene import Scene
@@ -215,7 +216,7 @@ def error_table(rows: Sequence[Row]) -> Table:
     columns = ("contact", "rock, 1 ms", "0.1 ms", "roll, 1 ms", "0.1 ms", "a step costs")
     lines = []
     for row in rows:
-        of_cases = [f"{error.largest:.1e}" for error in (*row.rock, *row.roll)]
+        of_cases = [number(error.largest) for error in (*row.rock, *row.roll)]
         lines.append((row.setting.name, *of_cases, f"{row.cost:.2f}"))
     return Table("", columns, lines)
 

@@ -2,7 +2,8 @@
 
 `python -m mjbeer.studies.polygon` rolls MuJoCo's own convex meshes down the incline of the can test
 and writes two tables into `STORED`, in a few seconds. What PhysX did is in `physx_prisms.json`: how
-its hulls came out and where they ended, as SAPIEN told. `mjbeer.theory.prism` rolls the same hulls.
+its hulls came out and where they ended. `python -m tools.physx_prisms` makes it, with SAPIEN.
+`mjbeer.theory.prism` rolls the same hulls.
 """
 
 import json
@@ -98,18 +99,12 @@ def physx_table() -> Table:
     columns = ("asked for", "kept at the ends", "theory of the two ends", "PhysX, 1 ms", "0.1 ms")
     lines = []
     for rolled in physx_prisms():
-        ends = [_end_of(edges) for edges in (rolled.left, rolled.right)]
+        ends = [f"{theory_end(edges):.1f}" for edges in (rolled.left, rolled.right)]
         name = f"{rolled.asked}" if rolled.scale == 1 else f"{rolled.asked}, {rolled.scale:g} times"
         kept = f"{len(rolled.left)}, {len(rolled.right)}"
         measured = [f"{rolled.end[timestep]:.1f}" for timestep in ("1e-3", "1e-4")]
         lines.append((name, kept, ", ".join(ends), *measured))
     return Table("", columns, lines)
-
-
-def _end_of(edges: Sequence[float]) -> str:
-    """Return where a rigid prism ends, or none if it stays on the facet on which it lies."""
-    starts_flat = min(abs(edge) for edge in edges) > 0.1
-    return "none" if starts_flat else f"{theory_end(edges):.1f}"
 
 
 if __name__ == "__main__":

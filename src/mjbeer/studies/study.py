@@ -47,7 +47,7 @@ class Study:
             study = cls(**json.loads(head))
             study.results = [Result(**json.loads(line)) for line in lines]
             if study.command != command:
-                raise ValueError(f"it is of `{study.command}`")
+                raise ValueError(f"it belongs to `{study.command}`")
         except (OSError, ValueError, TypeError) as error:
             raise ParameterError(f"{path} was not written by `{command}`: {error}") from error
         return study

@@ -82,7 +82,7 @@ ALWAYS = (
         "energy_drift",
         lambda run: run.energy_drift,
         "",
-        "largest change of energy over the swing's kinetic energy",
+        "largest change of energy divided by the swing's kinetic energy",
     ),
 )
 """The quantities that every sweep has, besides whether a run is trusted and its status."""

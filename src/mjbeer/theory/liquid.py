@@ -37,7 +37,7 @@ class Liquid:
     viscosity: float
     """Kinematic viscosity nu [m^2/s]."""
     law: str
-    """"thin layers", "creep" or "swing": the law with the largest part in the damping."""
+    """"thin layers", "creep" or "swinging": the law with the largest part in the damping."""
     slip_rate: float
     """Slip rate of steady rolling by the laws themselves [rad/s]; 0 on level ground."""
     carried: float
@@ -49,8 +49,8 @@ class Liquid:
     def __str__(self) -> str:
         properties = f"{self.name}: {self.density:g} kg/m^3, {self.viscosity:.3g} m^2/s"
         moves = "swings as ice" if self.swing.as_ice else "sloshes"
-        damped = f"damped by {self.law} at a slip rate of {self.slip_rate:.3g} rad/s"
-        return f"{properties}, {moves}, {damped}"
+        steady = f" at a slip rate of {self.slip_rate:.3g} rad/s" if self.slip_rate > 0 else ""
+        return f"{properties}, {moves}, damped by {self.law}{steady}"
 
 
 @remembers_call
@@ -69,7 +69,8 @@ def liquid(
     A thin liquid sloshes, as water, beer and olive oil do: its load is that of `Load.liquid`. It is
     that of `Load.segment`, with the inertia of ice, if the liquid is thick, as glycerol and honey
     are; if the fill is not between 0.01 and 0.99; if the incline is too steep to hold the liquid,
-    which then is carried round; or if the slosh is mainly in other modes than the slowest.
+    which then is carried round; or if ice swings faster than the slowest mode, which in a puddle in
+    a light can has next to none of the energy.
 
     `name` is "water", "beer", "olive oil", "glycerol" or "honey", at 20 degrees Celsius; `density`
     [kg/m^3] and kinematic `viscosity` [m^2/s] replace its own. `incline` is in [rad], `fill` is
@@ -78,24 +79,18 @@ def liquid(
 
     A `LiquidWarning` says that the damping is only an order of magnitude: at the terminal speed a
     film on the wall can hold a third of the liquid, the centrifugal acceleration exceeds
-    g cos(alpha), or the damping is for other rates. Another one says that the slowest mode of the
-    slosh has less than 0.8 of the energy of a flat tilt, and so is not the motion.
+    g cos(alpha), or the damping is for other rates; or the incline is so steep that there is no
+    terminal speed. Another one says that the slowest mode of the slosh has less than 0.8 of the
+    energy of a flat tilt, and so is not the motion.
 
     Raises:
-      ParameterError: if a parameter is invalid, the can is full, or the layers would be turbulent.
+      ParameterError: if a parameter is invalid, the can is full, there is no gravity, or the layers
+        would be turbulent.
     """
     used = liquid_in(name, incline, fill, can, density, viscosity, gravity)
     can = Can.massless() if can is None else can
     scene = Scene(can, used.swing.load, incline, "sliding", gravity, used.damping, drag)
-    try:
-        speed = scene.terminal_speed()
-    except NoEquilibriumError:  # none on so steep an incline
-        speed = 0.0
-    spread = ""
-    if centrifugal_ratio(scene, speed) > 1:
-        spread = f"at its terminal speed of {speed:.2g} m/s"
-    no_lump = lump_warning(name, scene, abs(speed) / scene.can.radius, spread)
-    for warning in (no_lump, modes_warning(name, used.swing)):
+    for warning in (_terminal_warning(name, scene), modes_warning(name, used.swing)):
         if warning:
             warn_of_liquid.get()(warning, LiquidWarning, stacklevel=3)
     return scene
@@ -117,12 +112,12 @@ def liquid_in(
     """
     properties = properties_of(name, density, viscosity)
     free = sliding(incline, fill, can, properties.density, gravity)
-    if free.load.offset == 0 or free.gravity == 0:
-        raise ParameterError(
-            "the damping of a liquid is known where it fills the can in part: fill must be less "
-            f"than 1 and gravity more than 0, got fill = {fill!r} and "
-            f"gravity = {free.gravity!r} m/s^2"
-        )
+    if free.load.offset == 0:
+        allowed = "a full can has no free surface: fill must be less than 1"
+        raise ParameterError(f"{allowed}, got {fill!r}")
+    if free.gravity == 0:
+        needed = "without gravity a liquid does not slosh, and nothing holds it at the bottom"
+        raise ParameterError(f"{needed}: gravity must be more than 0 [m/s^2], got {gravity!r}")
     swing = swing_of(free, properties)
     laws = torque_laws(free, properties, swing)
     steady_rate = steady_slip_rate(free, laws)
@@ -140,6 +135,18 @@ def liquid_in(
         swing=swing,
         damping=replace(fitted_damping(laws, fitted, coated_from), liquid=name),
     )
+
+
+def _terminal_warning(name: str, scene: Scene) -> str | None:
+    """Return why a liquid is no lump at its terminal speed, or None if it is one."""
+    try:
+        speed = scene.terminal_speed()
+    except NoEquilibriumError:
+        return _no_lump(name, ["the incline is too steep to hold it, and the can carries it round"])
+    spread = ""
+    if centrifugal_ratio(scene, speed) > 1:
+        spread = f"at its terminal speed of {speed:.2g} m/s"
+    return lump_warning(name, scene, abs(speed) / scene.can.radius, spread)
 
 
 def lump_warning(
@@ -170,8 +177,10 @@ def lump_warning(
     if not lowest * (1 - 1e-9) <= slip_rate <= highest:
         rates = f"{lowest:.3g} to {highest:.3g} rad/s between can and liquid"
         reasons.append(f"the damping is for {rates}, which slips by {slip_rate:.3g} rad/s")
-    if not reasons:
-        return None
+    return _no_lump(name, reasons) if reasons else None
+
+
+def _no_lump(name: str, reasons: list[str]) -> str:
     return f"{name} as one lump is an order of magnitude only: {'; '.join(reasons)}"
 
 

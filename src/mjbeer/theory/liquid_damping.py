@@ -204,7 +204,7 @@ def _share_of_rolling(steady_rate: float, swing_rate: float) -> float:
 
 def _name_of_law(laws: Laws, rolling: float, secant: float) -> str:
     if rolling < 1:
-        return "swing"
+        return "swinging"
     return "thin layers" if secant > laws.creep else "creep"
 
 
@@ -230,8 +230,9 @@ def require_laminar(free: Scene, properties: Properties, slip_rate: float) -> No
     reynolds = slip_rate * wetted_area(free).arc * free.can.radius**2 / properties.viscosity
     if reynolds > _TURBULENT:
         raise ParameterError(
-            f"the layer on the wall is turbulent (Reynolds number {reynolds:.2g}): the viscosity "
-            f"is too small or the can too fast, got {properties.viscosity:.4g} m^2/s in {free!r}"
+            "the layer on the wall would be turbulent, with a Reynolds number of "
+            f"{reynolds:.2g} where {_TURBULENT:.0e} is the limit: the viscosity is too small, or "
+            f"the can too fast, got {properties.viscosity:.4g} m^2/s and {slip_rate:.4g} rad/s"
         )
 
 
@@ -242,11 +243,9 @@ def coating_rate(free: Scene, properties: Properties) -> float:
     cross section.
     """
     a = free.can.radius
-    largest_area = FILM_LOAD * a * math.sqrt(properties.viscosity * a / free.gravity)
-    share_by_root = largest_area / (
-        a**2 * segment(require.fill(free.load.fill)).area
-    )  # divided by sqrt(W)
-    return (COATING_SHARE / share_by_root) ** 2
+    area = a**2 * segment(require.fill(free.load.fill)).area
+    film_area = COATING_SHARE * area
+    return (film_area / (FILM_LOAD * a)) ** 2 * free.gravity / (properties.viscosity * a)
 
 
 def share_in_film(coating_rate: float, slip_rate: float) -> float:

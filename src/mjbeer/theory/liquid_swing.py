@@ -20,13 +20,8 @@ THICKEST_LAYER = 0.1
 Half full it is 0.006 for water, 0.05 for olive oil, 0.19 for glycerol and 0.46 for honey, whose
 layers fill the can. At the limit a swing in a half-full can loses half of its amplitude in about
 one period: there slosh dies."""
-LEAST_SHARE = 0.5
-"""Least share that the slowest mode of a liquid that sloshes has of the energy of a flat tilt.
-
-Below, other modes are most of the motion. In a shallow puddle in a light can they swing about as
-fast as ice, and the slowest mode at half of that."""
 ONE_MODE = 0.8
-"""Share of the slowest mode below which it is not the motion."""
+"""Share of the energy of a flat tilt below which the slowest mode is not the motion."""
 
 
 class Swing(NamedTuple):
@@ -47,7 +42,13 @@ class Swing(NamedTuple):
 
 
 def swing_of(ice: Scene, properties: Properties) -> Swing:
-    """Return how the liquid swings whose scene without damping, with a load of ice, is `ice`."""
+    """Return how the liquid swings whose scene without damping, with a load of ice, is `ice`.
+
+    A shallow puddle in a light can swings mainly in faster modes than the slowest one, about as
+    fast as ice. The load is that of ice where ice swings faster than the slowest mode. Over the
+    first swings it is then the better one of the two, and in fuller cans the other is. At the fill
+    in between both have the same inertia.
+    """
     fill = require.fill(ice.load.fill)
     lowest, highest = slosh.FILLS
     if not lowest <= fill <= highest:
@@ -61,11 +62,15 @@ def swing_of(ice: Scene, properties: Properties) -> Swing:
     if layer > THICKEST_LAYER:
         reason = f"its layers are {layer:.2g} radii thick, and slosh has {THICKEST_LAYER:g} at most"
         return _swing_of_ice(ice, properties, reason)
-    share = float(modes.energy_shares[0])
-    if share < LEAST_SHARE:
-        reason = f"the slowest mode of its slosh has only {100 * share:.0f} % of the energy"
+    load = Load.liquid(ice.can, fill, properties.density)
+    if load.inertia > ice.load.inertia:
+        share = float(modes.energy_shares[0])
+        reason = (
+            "ice swings faster than the slowest mode of its slosh, which has only "
+            f"{100 * share:.0f} % of the energy"
+        )
         return _swing_of_ice(ice, properties, reason)._replace(share=share)
-    return _swing_of_slosh(ice, properties, modes)
+    return _swing_of_slosh(ice, properties, modes, load)
 
 
 def _swing_of_ice(ice: Scene, properties: Properties, reason: str) -> Swing:
@@ -75,7 +80,12 @@ def _swing_of_ice(ice: Scene, properties: Properties, reason: str) -> Swing:
     return Swing(ice.load, omega, torque, as_ice=reason, share=None)
 
 
-def _swing_of_slosh(ice: Scene, properties: Properties, modes: slosh.RollingModes) -> Swing:
+def _swing_of_slosh(
+    ice: Scene,
+    properties: Properties,
+    modes: slosh.RollingModes,
+    load: Load,
+) -> Swing:
     """Return the swing of a liquid that sloshes, damped like the slowest of its modes.
 
     On level ground a swing of the load moves the axis by k = m b/M_e per radian, and so slips by
@@ -83,7 +93,6 @@ def _swing_of_slosh(ice: Scene, properties: Properties, modes: slosh.RollingMode
     c (1 - k/a)^2 phi_dot^2. That is the damping ratio c (1 - k/a)^2/(2 J omega).
     """
     can = ice.can
-    load = Load.liquid(can, require.fill(ice.load.fill), properties.density)
     omega = float(modes.frequencies(can.radius, ice.gravity)[0])
     ratios = modes.damping_ratios(can.radius, can.length, ice.gravity, properties.viscosity)
     J = load.axis_inertia - load.moment**2 / ice.effective_mass

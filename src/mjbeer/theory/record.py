@@ -309,7 +309,7 @@ def failed_checks(record: Record, rolling: str) -> tuple[str, ...]:
     if error <= ERROR:
         return reasons
     reason = (
-        f"energy or momentum drift like an error of {error:.3g} rad of phi or u/a "
+        f"energy or momentum drifts as with an error of {error:.3g} rad of phi or u/a "
         f"(trusted up to {ERROR:g}): take a smaller timestep or a better integrator"
     )
     return (*reasons, reason)

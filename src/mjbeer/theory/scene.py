@@ -421,7 +421,7 @@ class Scene:
 
 
 def relaxation_rate(scene: Scene, phi: np.ndarray | float, slip_rate: float) -> np.ndarray:
-    """Return the rate [1/s] at which damping brings can and load together at a slip rate [rad/s].
+    """Return the rate |s| [1/s] at which slip decays, as exp(-|s| t), near a slip rate [rad/s].
 
     It is T'(slip_rate) J_f/(a^2 M_e J), where T' is the derivative of the damping's torque.
     """

@@ -346,10 +346,10 @@ def _rolling(fill: float, mass_ratio: float) -> RollingModes:
     arm = modes.offset / mass_ratio
     # In the basis of the eigenvectors of the can that is held.
     flat = np.sqrt(modes.energy_shares)
+    # The eigenvalues increase; the slowest mode has the largest.
     lengths, vectors = np.linalg.eigh(np.diag(modes.lengths) - arm * np.outer(flat, flat))
     flatness = flat @ vectors
     slowest = vectors[:, -1] * math.copysign(1.0, flatness[-1])
-    # The eigenvalues increase; the slowest mode has the largest.
     return RollingModes(
         modes.offset,
         lengths=_constant(lengths[::-1]),

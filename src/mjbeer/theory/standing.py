@@ -96,7 +96,7 @@ class Standing:
             raise ParameterError(f"{allowed}: a full can has no free surface, got {fill!r}")
         depth = fill * can.length / can.radius
         # In thinner films viscosity is everywhere.
-        require.within("height of the liquid over the radius", depth, 0.05, 50.0)
+        require.within("height of the liquid divided by the radius", depth, 0.05, 50.0)
         damping_ratio = self.damping_ratio
         if damping_ratio is not None:
             damping_ratio = require.within("damping_ratio", damping_ratio, 0, 1)
@@ -292,7 +292,7 @@ def _warn_of_thick_layers(standing_can: Standing) -> None:
         return
     message = (
         f"{standing_can.name} is too thick for the damping of thin layers: "
-        f"that on the wall has {radii:.3g} radii, not 0.1 or less"
+        f"the layer on its wall is {radii:.2g} radii thick, and 0.1 is the limit"
     )
     if standing_can.moving_modes == 0:
         ratio = standing_can.damping_ratios(1)[0]

@@ -56,6 +56,12 @@ def test_a_file_pins_its_packages_and_does_without_mjbeer(path: pathlib.Path) ->
     assert not re.search(r"^\s*(import|from) mjbeer", path.read_text(), re.MULTILINE)
 
 
+def test_the_results_are_those_of_the_files_as_they_are() -> None:
+    """A file that was changed since has to be measured anew."""
+    known = {engine.file: engine.digest for engine in Results.load().engines}
+    assert known == {path.stem: engines.digest(path) for path in FILES}
+
+
 def test_a_file_without_a_head_is_refused(tmp_path: pathlib.Path) -> None:
     path = tmp_path / "bare_can.py"
     path.write_text("import pymunk\n")
@@ -144,6 +150,36 @@ def test_one_engine_is_measured_alone_and_the_others_stay(
     names = {row.engine for row in Results.load(stored.RESULTS).rows}
     assert {row.engine for row in kept} == names - {"MuJoCo"}
     assert json.loads(path.read_text())["engines"]
+
+
+def test_an_engine_that_cannot_be_had_does_not_lose_its_rows(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "results.json"
+    path.write_text(stored.RESULTS.read_text())
+
+    def absent(_: pathlib.Path) -> Program:
+        raise AbsentError("pip cannot install pymunk_can: no wheel")
+
+    monkeypatch.setattr(engines, "RESULTS", path)
+    monkeypatch.setattr(engines, "ENVIRONMENTS", tmp_path)
+    monkeypatch.setattr(engines, "program", absent)
+    monkeypatch.setattr(sys, "argv", ["engines", "--only", "pymunk"])
+    with pytest.raises(SystemExit, match="nothing was measured"):
+        engines.main()
+    assert "pip cannot install pymunk_can: no wheel" in capsys.readouterr().err
+    assert path.read_text() == stored.RESULTS.read_text()
+
+
+@pytest.mark.parametrize("only", ["rolls", "mujoco_can", ""])
+def test_an_engine_that_has_no_file_is_refused(
+    only: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(sys, "argv", ["engines", "--only", only])
+    with pytest.raises(SystemExit):
+        engines.main()
+    message = f"there is no engine {only!r}; allowed are box2d, dart, drake"
+    assert message in capsys.readouterr().err
 
 
 @pytest.mark.costly

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mjbeer.studies.engines import engine_plot, engine_tables
+from mjbeer.studies.engines import engine_plot, engine_tables, findings
 from mjbeer.studies.engines.results import (
     CASES,
     FRICTION,
@@ -140,13 +140,35 @@ def test_a_row_that_a_start_aside_changes_says_so() -> None:
     assert found.is_sensitive
 
 
-@pytest.mark.parametrize("power", [0.3, 1.0, 2.0])
+def curve(errors: list[float]) -> list[Row]:
+    """Rows of an engine with these errors, one for each timestep."""
+    return [row(timestep, error) for timestep, error in zip(TIMESTEPS, errors, strict=True)]
+
+
+@pytest.mark.parametrize("power", [0.1, 0.3, 1.0, 2.0])
 def test_an_order_is_the_power_of_the_timestep(power: float) -> None:
-    order = order_of([row(timestep, timestep**power) for timestep in TIMESTEPS])
+    """A fourth of the timestep takes a quarter off the error if the power is 0.21."""
+    order = order_of(curve([timestep**power for timestep in TIMESTEPS]))
     assert order is not None
     assert order.order == pytest.approx(power)
-    assert order.converges == (power > 0.5)
+    assert order.converges == (power > 0.21)
     assert order.floor == pytest.approx(1e-4**power)
+
+
+def test_there_is_a_floor_where_the_last_timestep_does_not_help() -> None:
+    """Whatever the power of the timesteps before."""
+    rises = order_of(curve([0.4, 0.2, 0.1, 0.01, 0.02]))
+    assert rises is not None
+    assert not rises.converges
+    assert rises.floor == 0.01
+    after_an_explosion = order_of(curve([math.inf, math.inf, 80.0, 0.015, 0.014]))
+    assert after_an_explosion is not None
+    assert not after_an_explosion.converges
+
+
+def test_the_fall_from_an_explosion_is_no_order() -> None:
+    assert order_of(curve([math.inf, math.inf, 80.0, 0.1, 0.01])) is None
+    assert order_of(curve([80.0, 40.0, 20.0, 8.0, 2.0])) is not None
     assert order_of([row(1e-3, 1.0), row(1e-4, math.inf)]) is None
 
 
@@ -160,13 +182,74 @@ def test_labels_that_would_overlap_stand_around_their_mean() -> None:
 def test_the_table_marks_what_is_sensitive_and_names_orders_and_floors() -> None:
     found = row(1e-3, 0.0123)
     found.aside_error = 0.0123
-    assert engine_tables.error_cell(found) == "1.2e-02"
+    assert engine_tables.error_cell(found) == "0.012"
     found.aside_error = 0.02
-    assert engine_tables.error_cell(found) == "1.2e-02*"
+    assert engine_tables.error_cell(found) == "0.012*"
+    assert engine_tables.error_cell(row(1e-3, math.inf)) == "none"
     falling = order_of([row(timestep, timestep) for timestep in TIMESTEPS])
     assert engine_tables.order_cell(falling) == "h^1.0"
     floored = order_of([row(timestep, 0.3) for timestep in TIMESTEPS])
-    assert engine_tables.order_cell(floored) == "floor 3.0e-01"
+    assert engine_tables.order_cell(floored) == "floor 0.30"
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0.0, "0"),
+        (3.44e-5, "3.4e-5"),
+        (2.4e-4, "0.00024"),
+        (0.0996, "0.10"),
+        (0.4, "0.40"),
+        (7.23, "7.2"),
+        (22.4, "22"),
+        (1983.0, "2,000"),
+        (math.inf, "none"),
+    ],
+)
+def test_a_number_has_two_digits(value: float, text: str) -> None:
+    assert engine_tables.number(value) == text
+
+
+def test_an_engine_has_its_first_default_and_its_closest_setting_in_the_main_table() -> None:
+    """And what chooses its own steps, which no timestep is compared with."""
+    shown = engine_tables.main_ways(RESULTS)
+    names = [engine.name for engine in RESULTS.engines]
+    assert list(dict.fromkeys(way.engine for way in shown)) == names
+    for name in names:
+        of_engine = [way for way in engine_tables.ways(RESULTS) if way.engine == name]
+        errors = {
+            way: engine_tables.worst_error(RESULTS, way)
+            for way in of_engine
+            if way.engine != "SciPy" and "error control" not in way.setting
+        }
+        expected = {way for way in of_engine if way not in errors} | {of_engine[0]}
+        if errors:
+            expected.add(min(errors, key=errors.__getitem__))
+        assert {way for way in shown if way.engine == name} == expected
+
+
+def test_without_an_engine_there_are_tables_but_no_findings() -> None:
+    rows = [stored for stored in RESULTS.rows if stored.engine != "Drake"]
+    known = [engine for engine in RESULTS.engines if engine.name != "Drake"]
+    without = Results(known, {"drake_can": "pip cannot install drake_can: no wheel"}, rows)
+    assert findings.findings(without) == []
+    assert findings.answer(without) == (
+        "There is no answer without drake_can, which could not be had."
+    )
+    assert {row[0] for row in engine_tables.errors(without).rows} == {
+        engine.name for engine in known
+    }
+    assert "Left out: drake_can, as pip cannot" in engine_tables.measured(without)
+
+
+def test_the_answer_is_not_given_for_other_results() -> None:
+    """Its sentences name the engines that are closest."""
+    close = [
+        replace(stored, phi_error=1e-9, u_error=1e-9) if stored.engine == "Pymunk" else stored
+        for stored in RESULTS.rows
+    ]
+    with pytest.raises(ValueError, match="the results are others"):
+        findings.answer(Results(RESULTS.engines, {}, close))
 
 
 def test_results_come_back_from_their_file() -> None:

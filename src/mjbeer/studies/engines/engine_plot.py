@@ -26,43 +26,51 @@ _CEILING = 100.0
 """Points with larger errors [rad] are not drawn."""
 _FLOOR = 1e-7
 """Nor are those with smaller ones: no contact has them."""
-_LABELS = 1.03
+_FASTEST = 0.7
+_SLOWEST = 4e4
+"""The ends of the axis of processor time [ms]."""
+_LABELS = 1.02
 """Where the labels begin, in widths of a panel."""
-_APART = 0.026
+_APART = 0.038
 """Least distance of two labels, in heights of a panel."""
 _SUBTITLE = (
-    "Each point is one timestep: 4, 2, 1, 0.4 and 0.1 ms from left to right. Dashed: an engine's "
-    "defaults; solid: tuned. A full marker's error falls with the timestep h as the label says; an "
-    "open one's has a floor [rad]. SciPy has tolerances instead; errors below 1e-7 are left out."
+    "Each point is one timestep: 4, 2, 1, 0.4 and 0.1 ms from left to right. Full markers: the "
+    "error falls with the timestep h as the label says. Open markers: it has a floor [rad] or no "
+    "power. SciPy is no engine, and has tolerances in place of timesteps; so has Drake's error "
+    "control. Errors below 1e-7 rad are left out."
 )
 
 
 def draw(results: Results, path: pathlib.Path | Picture) -> None:
     """Draw all curves, and write them to `path` with .svg appended.
 
+    Each case has a panel for the engines' defaults, and one for settings that are tuned.
+
     Raises:
       OutputError: if a file cannot be written.
     """
     title = "Error over run time of a can in physics engines"
     styles = dict(zip(_engines(results), itertools.cycle(_STYLES), strict=False))
-    with chart(path, len(CASES), 1, 12, 8.2 * len(CASES), title, _SUBTITLE) as panels:
-        for axes, case in zip(panels, CASES.values(), strict=True):
-            curves = results.curves(case.name)
+    with chart(path, len(CASES), 2, 13, 5.4 * len(CASES), title, _SUBTITLE) as panels:
+        places = itertools.product(CASES.values(), (False, True))
+        for axes, (case, tuned) in zip(panels, places, strict=True):
             ends = {}
-            for key, rows in curves.items():
+            for key, rows in results.curves(case.name).items():
                 shown = [row for row in rows if _FLOOR < row.error < _CEILING and row.seconds]
-                if shown:
+                if shown and shown[0].tuned == tuned:
                     _draw_curve(axes, shown, styles[key.engine])
                     ends[key] = shown
+            settings = "tuned" if tuned else "at the engines' defaults"
             axes.set(
                 xscale="log",
                 yscale="log",
-                title=f"{case.name}: {case.about}",
+                title=f"{case.name}, {settings}",
+                xlim=(_FASTEST, _SLOWEST),
                 ylim=(_FLOOR, _CEILING),
             )
             axes.set_xlabel("processor time of 2 s of motion [ms]")
             axes.set_ylabel("largest error of φ and u/a [rad]")
-            axes.xaxis.set_major_formatter("{x:g}")
+            axes.xaxis.set_major_formatter("{x:,g}")
             axes.minorticks_off()
             _name_ends(axes, ends, styles)
 
@@ -77,7 +85,7 @@ def _draw_curve(axes: Axes, shown: Sequence[Row], style: _Style) -> None:
     axes.plot(
         [1e3 * min(row.seconds) for row in shown],
         [row.error for row in shown],
-        "-" if shown[0].tuned else "--",
+        "-",
         marker=style.marker,
         color=style.colour,
         markerfacecolor=style.colour if converges else "white",
@@ -93,7 +101,7 @@ def _name_ends(axes: Axes, ends: dict[CurveKey, list[Row]], styles: dict[str, _S
     heights = [(math.log10(ends[key][-1].error) - low) / (high - low) for key in keys]
     for key, height in zip(keys, spread(heights, _APART), strict=True):
         last = ends[key][-1]
-        words = f"{key.engine}, {key.shape}, {key.setting}"
+        words = ", ".join([*key[1:3], *([key.setting] if last.tuned else [])])
         fall = order_cell(order_of(ends[key]))
         axes.annotate(
             f"{words}: {fall}" if fall else words,

@@ -13,6 +13,8 @@ FINE = 1e-4
 """The shorter timestep [s] of the tables."""
 SENSITIVE_MARK = "*"
 """Stands behind the error of a row that a start aside changes."""
+_PLAIN = 1e-4
+"""The least number that is written without a power of ten."""
 
 
 class Way(NamedTuple):
@@ -39,15 +41,60 @@ def row_at(rows: Sequence[Row], timestep: float) -> Row:
     return found
 
 
-def errors(results: Results) -> Table:
-    """Return the errors of both cases, how they fall with the timestep, and run times."""
+def coarse_rows(results: Results, way: Way) -> list[Row]:
+    """Return the rows of both cases at a timestep of 1 ms."""
+    of_way = [row for row in results.rows if way.key(row.case) == row.key]
+    return [row for row in of_way if row.timestep == COARSE]
+
+
+def worst_error(results: Results, way: Way) -> float:
+    """Return the larger error of both cases at a timestep of 1 ms [rad]."""
+    return max(row.error for row in coarse_rows(results, way))
+
+
+def closest(results: Results) -> dict[str, Way]:
+    """Return, for each engine, the shape and setting whose `worst_error` is the least.
+
+    Settings that choose their own steps are left out.
+    """
+    found: dict[str, Way] = {}
+    for way in ways(results):
+        if all(row.has_timestep for row in coarse_rows(results, way)):
+            other = found.setdefault(way.engine, way)
+            if worst_error(results, way) < worst_error(results, other):
+                found[way.engine] = way
+    return found
+
+
+def main_ways(results: Results) -> list[Way]:
+    """Return the rows of the main table.
+
+    An engine has the shape that its file names first, at its defaults; what is `closest`; and what
+    chooses its own steps.
+    """
+    firsts: dict[str, Way] = {}
+    for way in ways(results):
+        firsts.setdefault(way.engine, way)
+    chosen = {*firsts.values(), *closest(results).values()}
+    return [
+        way
+        for way in ways(results)
+        if way in chosen or not all(row.has_timestep for row in coarse_rows(results, way))
+    ]
+
+
+def errors(results: Results, shown: Sequence[Way] = ()) -> Table:
+    """Return the errors of both cases, how they fall with the timestep, and run times.
+
+    The rows are those `shown`, or without them all.
+    """
     columns = ["engine", "shape", "setting"]
     for case in CASES:
         columns += [f"{case}, 1 ms", "0.1 ms", "falls as"]
-    columns.append("run time")
+    columns.append("run time [ms]")
     curves = {case: results.curves(case) for case in CASES}
     lines = []
-    for way in ways(results):
+    for way in shown or ways(results):
         cells = list(way)
         for case, of_case in curves.items():
             rows = of_case[way.key(case)]
@@ -58,11 +105,22 @@ def errors(results: Results) -> Table:
     return Table("Largest error of φ and u/a in 2 s [rad]", tuple(columns), lines, left=(0, 1, 2))
 
 
+def number(value: float) -> str:
+    """Return a number with two digits as people write it: 0.087, 22, 3.4e-5; "none" if infinite."""
+    if value == 0:
+        return "0"
+    if not math.isfinite(value):
+        return "none"
+    if value < _PLAIN:
+        digits, power = f"{value:.1e}".split("e")
+        return f"{digits}e{int(power)}"
+    decimals = max(0, 1 - math.floor(math.log10(float(f"{value:.1e}"))))
+    return f"{float(f'{value:.1e}'):,.{decimals}f}"
+
+
 def error_cell(row: Row) -> str:
     """Return the error of a row [rad] as text, marked if a start aside changes it."""
-    if row.failure:
-        return "none"
-    return f"{row.error:.1e}{SENSITIVE_MARK if row.is_sensitive else ''}"
+    return f"{number(row.error)}{SENSITIVE_MARK if row.is_sensitive else ''}"
 
 
 def order_cell(order: Order | None) -> str:
@@ -71,18 +129,15 @@ def order_cell(order: Order | None) -> str:
         return ""
     if order.converges:
         return f"h^{order.order:.1f}"
-    return f"floor {order.floor:.1e}"
+    return f"floor {number(order.floor)}"
 
 
 def time_cell(row: Row) -> str:
-    """Return the least and the largest run time of a row as text [ms]."""
+    """Return the least and the largest run time of a row as text [ms]; one if they look alike."""
     if not row.seconds:
         return ""
-    return f"{_milliseconds(min(row.seconds))} to {_milliseconds(max(row.seconds))} ms"
-
-
-def _milliseconds(time: float) -> str:
-    return f"{1e3 * time:.3g}" if time < 1 else f"{1e3 * time:,.0f}"
+    extremes = (number(1e3 * min(row.seconds)), number(1e3 * max(row.seconds)))
+    return " to ".join(dict.fromkeys(extremes))
 
 
 def conservation(results: Results) -> Table:
@@ -97,7 +152,7 @@ def conservation(results: Results) -> Table:
         for case, of_case in curves.items():
             row = row_at(of_case[way.key(case)], COARSE)
             values = (row.energy_error, 1e3 * row.slip, 1e3 * row.lateral)
-            cells += [f"{value:.1e}" if math.isfinite(value) else "none" for value in values]
+            cells += [number(value) for value in values]
         lines.append(tuple(cells))
     return Table("Energy, slip and drift at 1 ms", tuple(columns), lines, left=(0, 1, 2))
 
@@ -121,9 +176,11 @@ def versions(engine: Engine) -> str:
 
 def measured(results: Results) -> str:
     """Return versions and machine as sentences."""
-    machines = {tuple(engine.machine.values()): engine.machine for engine in results.engines}
     places = " and ".join(
-        f"{machine['cores']} cores of an {machine['processor']}" for machine in machines.values()
+        dict.fromkeys(
+            f"{engine.machine['cores']} cores of an {engine.machine['processor']}"
+            for engine in results.engines
+        )
     )
     names = ", ".join(versions(engine) for engine in results.engines)
     text = f"Measured on {places}, of which a run uses one, with Python "

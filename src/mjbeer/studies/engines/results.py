@@ -41,12 +41,15 @@ TIMESTEPS = (4e-3, 2e-3, 1e-3, 4e-4, 1e-4)
 """The timesteps [s] that every engine is tried with."""
 EQUATION = "SciPy"
 """The tool that is no engine: it integrates the equation of the motion."""
+ERROR_CONTROL = "error control"
+"""Part of the name of a setting that chooses its own steps."""
 _FITTED = 1e-3
 """The longest timestep [s] of the fit of an order."""
 _LARGE = 1.0
 """Where an error is no small one any more [rad]."""
-_CONVERGES = 0.5
-"""The least order of what converges; below, the error has a floor."""
+_HELPS = 0.25
+"""The least share by which the last timestep lowers the error of what converges; with less, the
+error has a floor."""
 _RADIUS = 0.033
 _MASS = 0.2
 
@@ -237,6 +240,11 @@ class Row:
         return CurveKey(self.case, self.engine, self.shape, self.setting)
 
     @property
+    def has_timestep(self) -> bool:
+        """Whether all steps are the timestep, and not what a tolerance asks for."""
+        return self.engine != EQUATION and ERROR_CONTROL not in self.setting
+
+    @property
     def error(self) -> float:
         """The larger error of phi and u/a [rad]."""
         return max(self.phi_error, self.u_error)
@@ -271,28 +279,28 @@ class Order(NamedTuple):
     """The exponent p of error = C h^p that fits best."""
     floor: float
     """The least error of the curve [rad]."""
-
-    @property
-    def converges(self) -> bool:
-        """Whether a shorter timestep still helps."""
-        return self.order >= _CONVERGES
+    converges: bool
+    """Whether the last timestep still helps."""
 
 
 def order_of(rows: Sequence[Row]) -> Order | None:
-    """Return how the error of a curve falls; None if it cannot be told.
+    """Return how the error of a curve falls, longest timestep first; None if it cannot be told.
 
-    That takes three motions, and errors that are all below or all above `_LARGE`: the fall from an
-    explosion is no order. The rows of `EQUATION` have tolerances, and so no order in a timestep.
+    That takes three motions, and, unless there is a floor, errors that are all below or all above
+    `_LARGE`: the fall from an explosion is no order. What has a tolerance has no order in a
+    timestep.
     """
     fitted = [row for row in rows if row.timestep <= _FITTED and 0 < row.error < math.inf]
-    if len(fitted) < 3 or fitted[0].engine == EQUATION:
+    if len(fitted) < 3 or not fitted[0].has_timestep:
         return None
-    if min(row.error for row in fitted) < _LARGE < max(row.error for row in fitted):
+    *_, before, last = fitted
+    converges = last.error <= (1 - _HELPS) * before.error
+    if converges and min(row.error for row in fitted) < _LARGE < max(row.error for row in fitted):
         return None
     timesteps = np.log([row.timestep for row in fitted])
     errors = np.log([row.error for row in fitted])
     slope, _ = np.polyfit(timesteps, errors, 1)
-    return Order(float(slope), min(row.error for row in rows))
+    return Order(float(slope), min(row.error for row in rows), converges)
 
 
 @dataclass

@@ -292,7 +292,7 @@ def _found_by_search() -> Iterator[KnownCase]:
     load = Load(9007.68689806812, 0.9475437058226647, 14361.91170936032)
     yield _single_run(
         "frozen, 6e-10 rad beside the top, in contact",
-        "the solver of the contact took what moves the can for nothing, alike at half the timestep",
+        "the solver of the contact ignored the torque that moves the can, at half the timestep too",
         "contact, DOP853, 6 ms",
         Trial(
             Scene(can, load, 1.7453292519943295e-10, "frozen"),

@@ -76,10 +76,10 @@ _SEEDS = 10**9
 _READ = """
 A run is **right** if it is trusted, and phi and u/a stay within 0.01 rad of theory (relative beyond
 1 rad), and within its tolerance if it has one. It is **refused** if it ends in an error that states
-the reason, also if its scene is outside the domain, and **doubted** if it carries a warning, right
-or wrong. It is **silent** if it is trusted and wrong: there must be none. Two theories that share
-no code judge a motion without damping; damped ones, liquids and attached cans have exact theory
-alone.
+the reason, for instance because its scene is outside the domain. It is **doubted** if it carries a
+warning, whether it is right or wrong. It is **silent** if it is trusted and wrong, which must never
+happen. Two theories that share no code check a motion without damping; exact theory alone checks
+damped motions, liquids and attached cans.
 """
 """Text of the summary on how to read the tables of the search."""
 
@@ -228,7 +228,7 @@ def search_tables(found: Totals, results: Sequence[Result] = ()) -> list[Table]:
 def _table_of_kinds(kinds: Mapping[str, Mapping[str, int]]) -> Table:
     """Return a table with a row for each kind of model: how runs ended, and who judged them."""
     counted = (*VERDICTS, *JUDGES, NEEDLESS, ABOVE, TWICE)
-    last = "silent share of trusted runs at most, at 95 %"
+    last = "silent of trusted runs, at most (95 % confidence)"
     rows = []
     for kind, counts in kinds.items():
         runs = sum(counts.get(verdict, 0) for verdict in VERDICTS)
