@@ -57,7 +57,7 @@ def test_the_command_line_has_the_same_defaults() -> None:
         ({"integrator": "rk4"}, r"integrator must be one of 'Euler'.*'GaussJackson'; got 'rk4'$"),
         (
             {"integrator": "DOP853", "tolerance": 1e-6},
-            "a tolerance chooses the integrator .* got 'DOP853'",
+            "with a tolerance mjbeer chooses the integrator: .* got 'DOP853'",
         ),
         ({"times": [0.0, 0.5]}, r"between 0 and the duration 0\.1 s, got 0\.5 s"),
         ({"times": [0.01, 0.01]}, r"times must increase, but times\[1\] is 0\.01 s after 0\.01 s"),
