@@ -86,7 +86,7 @@ def test_two_fingers_carry_a_can_and_do_not_spill(tmp_path: pathlib.Path) -> Non
     assert rise < QUANTITATIVE
 
 
-@pytest.mark.slow
+@pytest.mark.costly
 def test_a_can_swings_in_fingers_that_do_not_hold_a_twist() -> None:
     """So that friction against twisting is what the tilt of the other test measures."""
     example = runpy.run_path(str(EXAMPLES / "grasp.py"))

@@ -303,7 +303,7 @@ def extreme(draw: st.DrawFn) -> Scene:
 
 
 SEARCH = settings(
-    max_examples=100, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck)
+    max_examples=70, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck)
 )
 
 

@@ -11,7 +11,16 @@ import pytest
 
 from mjbeer import Can, build, frozen, render, simulate
 from mjbeer.cli.app import SCENES_OF, main, parse
-from mjbeer.cli.arguments import SCENES, angle, angles, numbers, scene, scene_options, start, steps
+from mjbeer.cli.arguments import (
+    SCENES,
+    angle,
+    angles,
+    model_arguments,
+    numbers,
+    scene,
+    scene_options,
+    start_arguments,
+)
 from mjbeer.model.export import export
 
 OWN: dict[str, Any] = {
@@ -68,8 +77,8 @@ def test_the_options_of_the_run_arrive() -> None:
         "--integrator discrete --timestep 2e-3 --tolerance 1e-8 --friction 0.4 --output motion.csv"
     )
     given = parse(words.split())
-    assert start(given) == {"phi0": math.radians(-30), "phi_dot0": math.pi}
-    assert steps(given) == {
+    assert start_arguments(given) == {"phi0": math.radians(-30), "phi_dot0": math.pi}
+    assert model_arguments(given) == {
         "rolling": "contact",
         "integrator": "discrete",
         "timestep": 2e-3,

@@ -55,8 +55,8 @@ def begin(*_: object, **__: object) -> None:
 
 
 WORK = {
-    "simulate frozen": "cli.motions.trajectory_of",
-    "render frozen": "cli.motions.trajectory_of",
+    "simulate frozen": "cli.motions.run_of",
+    "render frozen": "cli.motions.run_of",
     "render standing": "drawing.standing_film.StandingFilm.plan",
     "fit examples/synthetic_track.csv frozen": "tracks.fit.fit",
     "sweep frozen --fill 0.3,0.5": "studies.sweep.sweep",

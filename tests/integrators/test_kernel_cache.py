@@ -69,18 +69,32 @@ def test_a_change_in_the_file_of_a_callee_takes_effect(package: pathlib.Path) ->
     assert in_a_new_process(ADD) == "31.0"
 
 
-def test_folders_of_other_sources_go_when_they_are_not_used_any_more(package: pathlib.Path) -> None:
-    where = "from mjbeer.integrators.kernel_cache import FOLDER; print(FOLDER)"
-    first = pathlib.Path(in_a_new_process(where))
-    assert first.is_relative_to(package)
-    (package / "integrators" / "callee.py").write_text(f"{CALLEE}\n")
-    second = pathlib.Path(in_a_new_process(where))
+def test_folders_of_other_sources_go_when_they_are_not_used_any_more(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    source = tmp_path / "callee.py"
+    monkeypatch.setattr(kernel_cache, "SOURCES", (source,))
+    monkeypatch.setattr(kernel_cache, "_numba_folder", lambda: tmp_path / "kept")
+
+    def begin_a_process() -> pathlib.Path:
+        """Do what every process does with the folder when it begins."""
+        folder = kernel_cache._folder()
+        monkeypatch.setattr(kernel_cache, "FOLDER", folder)
+        kernel_cache._tidy()
+        return folder
+
+    source.write_text(CALLEE)
+    first = begin_a_process()
+    source.write_text(f"{CALLEE}\n")
+    second = begin_a_process()
     assert second != first
     assert first.exists(), "a process that has begun before the change may still write there"
+
     days_ago = time.time() - 3 * 24 * 3600
     for folder in (first, second):
         os.utime(folder, (days_ago, days_ago))
-    assert pathlib.Path(in_a_new_process(where)) == second
+    assert begin_a_process() == second
+
     assert second.exists()
     assert not first.exists()
 

@@ -140,7 +140,7 @@ def written(scene: Scene, setting: Setting) -> mujoco.MjModel:
 
 
 @pytest.mark.slow
-@settings(max_examples=150, deadline=None, derandomize=True)
+@settings(max_examples=100, deadline=None, derandomize=True)
 @given(
     any_scene(),
     st.sampled_from(["reduced", "equality"]),

@@ -5,11 +5,11 @@ import numpy as np
 import pytest
 
 from mjbeer import build, frozen
-from mjbeer.studies.benchmark.points import USUAL
+from mjbeer.studies.benchmark.points import STOCK
 from mjbeer.studies.benchmark.timing import usual_model
 
 
-@pytest.mark.parametrize("written", USUAL)
+@pytest.mark.parametrize("written", STOCK)
 def test_constraints_are_mujoco_s_defaults(written: str) -> None:
     model = usual_model(written, frozen())
     stock = mujoco.MjSpec().option
@@ -20,4 +20,4 @@ def test_constraints_are_mujoco_s_defaults(written: str) -> None:
         assert getattr(model.opt, name) == getattr(stock, name), name
     assert not model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_REFSAFE
     assert (model.opt.timestep, model.opt.integrator) == (2e-3, mujoco.mjtIntegrator.mjINT_EULER)
-    assert np.array_equal(model.body_mass, build(frozen(), USUAL[written]).body_mass)
+    assert np.array_equal(model.body_mass, build(frozen(), STOCK[written]).body_mass)

@@ -12,13 +12,17 @@ from mjbeer.exceptions import OutputError
 from mjbeer.output import folders
 from tests.support.processes import hear, interrupt, start
 
+COMMANDS = ("benchmark", "stability", "paper", "report")
 HOLD = """
-import pathlib, sys, time
+import contextlib, pathlib, sys, time
 from mjbeer.output.folders import owned
-with owned(pathlib.Path(sys.argv[1]), sys.argv[2]):
+with contextlib.ExitStack() as held:
+    for command in sys.argv[2:]:
+        held.enter_context(owned(pathlib.Path(sys.argv[1], command), f"mjbeer {command}"))
     print("locked", flush=True)
     time.sleep(3600)
 """
+"""A process that holds a folder for each of these commands."""
 
 
 def write(folder: pathlib.Path, text: str, error: BaseException | None = None) -> None:
@@ -118,9 +122,7 @@ def test_a_folder_that_is_a_file_is_refused(tmp_path: pathlib.Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("command", ["benchmark", "stability", "paper", "report"])
 def test_a_second_command_in_a_folder_is_refused_until_the_first_is_gone(
-    command: str,
     tmp_path: pathlib.Path,
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
@@ -133,16 +135,17 @@ def test_a_second_command_in_a_folder_is_refused_until_the_first_is_gone(
         "studies.stability.stability_study.run",
     ):
         monkeypatch.setattr(f"mjbeer.{work}", lambda *_: pytest.fail("it was begun"))
-    folder = tmp_path / "new"
-    with start([str(folder), f"mjbeer {command}"], HOLD) as holder:
+    with start([str(tmp_path), *COMMANDS], HOLD) as holder:
         hear(holder, "locked")
+        for command in COMMANDS:
+            folder = tmp_path / command
 
-        assert main([command, "--output", str(folder)]) == 2
+            assert main([command, "--output", str(folder)]) == 2
 
-        refused = f"mjbeer: cannot write to {folder}: another command is at work there\n"
-        assert capsys.readouterr().err == refused
-        assert sorted(os.listdir(folder)) == [".lock", ".mjbeer"]
+            refused = f"mjbeer: cannot write to {folder}: another command is at work there\n"
+            assert capsys.readouterr().err == refused
+            assert sorted(os.listdir(folder)) == [".lock", ".mjbeer"]
         interrupt(holder, signal.SIGKILL)
-    for _ in range(2):
-        with folders.owned(folder, f"mjbeer {command}"):
+    for command in 2 * COMMANDS:
+        with folders.owned(tmp_path / command, f"mjbeer {command}"):
             pass

@@ -18,10 +18,11 @@ from tests.support.processes import fall, hear, interrupt, start, where, work_an
 AT_WORK = """
 import os, sys
 from mjbeer.output.jobs import Job, run_jobs
-from tests.support.processes import {work}
+from tests.support.processes import hang_in_a_program
 os.cpu_count = lambda: 2
-run_jobs([Job(str(place), {work}) for place in range(4)], None)
+run_jobs([Job(str(place), hang_in_a_program) for place in range(4)], None)
 """
+"""Its workers wait for a program that hangs and ignores signals, as ffmpeg might."""
 
 
 def fail(name: str) -> None:
@@ -35,20 +36,15 @@ def two_cores(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.parametrize("cores", [1, pytest.param(2, marks=pytest.mark.slow)])
 def test_results_are_in_the_order_of_the_jobs(cores: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With two cores the jobs run in other processes, which have ended then."""
     monkeypatch.setattr(os, "cpu_count", lambda: cores)
     jobs = [Job(str(number), partial(abs, -number)) for number in range(5)]
+    jobs.append(Job("place", where))
 
-    results = run_jobs(jobs, None)
+    *results, place = run_jobs(jobs, None)
 
     assert results == [0, 1, 2, 3, 4]
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("two_cores")
-def test_jobs_run_in_other_processes() -> None:
-    found = run_jobs([Job("one", where), Job("other", where)], None)
-
-    assert os.getpid() not in {result["process"] for result in found}
+    assert (place["process"] == os.getpid()) == (cores == 1)
     assert not multiprocessing.active_children()
 
 
@@ -119,13 +115,9 @@ def test_a_job_is_taken_when_its_turn_comes() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
-@pytest.mark.parametrize("work", ["work_and_sleep", "hang_in_a_program"])
-def test_no_process_outlives_the_one_that_started_it(work: str, number: signal.Signals) -> None:
-    """It alone gets the signal; its streams end only when those that it started have ended, too.
-
-    A worker may wait for a program that hangs and ignores signals, as ffmpeg might.
-    """
-    with start([], AT_WORK.format(work=work)) as process:
+def test_no_process_outlives_the_one_that_started_it(number: signal.Signals) -> None:
+    """It alone gets the signal; its streams end only when those that it started have ended, too."""
+    with start([], AT_WORK) as process:
         for _ in range(2):
             hear(process, "at work")
 

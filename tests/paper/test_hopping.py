@@ -112,7 +112,7 @@ def test_contact_rolls_slips_and_grips_as_coulomb_says(phi_dot0: float) -> None:
 @pytest.mark.parametrize("phi", [3.0, 2.0, 1.0])
 def test_closed_forms_are_the_theory_of_forces(ratio: float, phi: float) -> None:
     scene = hoop(hoop_mass=ratio, load_mass=1.0, gravity=1.0, radius=1.0, length=1.0)
-    rate = math.sqrt(hopping.rate(ratio, phi))
+    rate = math.sqrt(hopping.rate_squared(ratio, phi))
     forces = rolling_forces(scene, phi, rate, rate)
     assert hopping.normal(ratio, phi) == pytest.approx(float(forces.normal), rel=1e-12, abs=1e-14)
     assert hopping.friction(ratio, phi) == pytest.approx(

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from functools import cache
 
 import numpy as np
 import pytest
@@ -10,12 +11,14 @@ from scipy.integrate import solve_ivp
 from mjbeer import standing
 from mjbeer.drawing.film import Film
 from mjbeer.drawing.sheet import Sheet
-from mjbeer.report.carry import MOVES, Carried, Carry, carry, minimum_jerk
+from mjbeer.report import carry as carried_cans
+from mjbeer.report.carry import MOVES, Carried, Carry, minimum_jerk
 from mjbeer.theory.standing import INDICATIVE, QUANTITATIVE
 
 CAN = standing()
 TOTAL = CAN.mass + CAN.can.mass
 SHAPE = {"rtol": 1e-9, "atol": 1e-12, "max_step": 0.01}
+carry = cache(carried_cans.carry)
 
 
 def linear(

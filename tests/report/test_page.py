@@ -217,13 +217,13 @@ def test_the_misprints_have_their_kinds_and_the_numbers_of_the_results(text: str
 
 @pytest.mark.parametrize("name", films.COMMANDS)
 def test_a_film_s_command_makes_the_same_motion(name: str) -> None:
-    from mjbeer.cli.motions import trajectory_of
+    from mjbeer.cli.motions import run_of
 
     film = FILMS[name]
     assert isinstance(film, MotionFilm)
     given = parse(shlex.split(films.COMMANDS[name])[1:])
     filmed = film.trajectory()
-    commanded = trajectory_of(given)
+    commanded = run_of(given)
     # The degrees of a command have seven digits.
     assert filmed.phi0 == pytest.approx(commanded.phi0, abs=1e-6)
     assert filmed.phi_dot0 == pytest.approx(commanded.phi_dot0, abs=1e-6)

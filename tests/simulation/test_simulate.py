@@ -17,7 +17,7 @@ from mjbeer import (
     sliding,
 )
 from mjbeer.cli.app import parse
-from mjbeer.cli.motions import trajectory_of
+from mjbeer.cli.motions import run_of
 from mjbeer.exceptions import (
     DivergenceError,
     ParameterError,
@@ -38,7 +38,7 @@ def test_a_run_starts_where_theory_starts_and_is_trusted(scene: Scene) -> None:
 
 def test_the_command_line_has_the_same_defaults() -> None:
     ours = simulate(sliding())
-    theirs = trajectory_of(parse(["simulate", "sliding"]))
+    theirs = run_of(parse(["simulate", "sliding"]))
     assert (ours.time[-1], ours.phi0) == (2.0, math.radians(60))
     # Degrees and back are a rounding of the start.
     assert theirs.phi == pytest.approx(ours.phi, abs=1e-14)
@@ -57,7 +57,7 @@ def test_the_command_line_has_the_same_defaults() -> None:
         ({"integrator": "rk4"}, r"integrator must be one of 'Euler'.*'GaussJackson'; got 'rk4'$"),
         (
             {"integrator": "DOP853", "tolerance": 1e-6},
-            "a tolerance chooses the integrator .* got 'DOP853'",
+            "with a tolerance mjbeer chooses the integrator: .* got 'DOP853'",
         ),
         ({"times": [0.0, 0.5]}, r"between 0 and the duration 0\.1 s, got 0\.5 s"),
         ({"times": [0.01, 0.01]}, r"times must increase, but times\[1\] is 0\.01 s after 0\.01 s"),

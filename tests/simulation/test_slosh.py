@@ -79,10 +79,11 @@ def test_a_free_lying_can_sloshes_as_one_that_rolls(fill: float) -> None:
     model = world.compile()
     data = mujoco.MjData(model)
     data.joint("can-swing").qpos = 3e-3
+    rate = data.joint("can-swing").qvel
     rates = []
     for _ in range(1000):
         mujoco.mj_step(model, data)
-        rates.append(data.joint("can-swing").qvel[0])
+        rates.append(rate[0])
     measured = measured_frequency(np.array(rates), 1e-3, near=expected)
     assert measured == pytest.approx(expected, rel=1e-5)
     # It stays in its plane.
@@ -159,10 +160,10 @@ def test_the_load_is_one_mode_and_the_liquid_a_sum_of_modes(can: str, fill: floa
     time, tilt, axis = judge.let_go(slosh_judge.DURATION)
     lengths, shares = judge.matrix_modes()
     modes = np.cos(np.outer(time, np.sqrt(judge.gravity / lengths)))
-    assert tilt / slosh_judge.AMPLITUDE == pytest.approx(modes @ shares, abs=1e-4)
+    assert np.abs(tilt / slosh_judge.AMPLITUDE - modes @ shares).max() < 1e-4
     # Nothing pushes along the ground: can and liquid keep their centre of effective mass.
     arm = judge.moments.sum() / (judge.ratio * slosh_judge.MASS)
-    assert axis == pytest.approx(arm * (tilt - tilt[0]), abs=1e-7 * slosh_judge.AMPLITUDE)
+    assert np.abs(axis - arm * (tilt - tilt[0])).max() < 1e-7 * slosh_judge.AMPLITUDE
     slowest = mode_frequency(judge.can, Load.liquid(judge.can, fill))
     load = judge.lump(slosh_judge.DURATION)
-    assert load.phi / slosh_judge.AMPLITUDE == pytest.approx(np.cos(slowest * time), abs=1e-5)
+    assert np.abs(load.phi / slosh_judge.AMPLITUDE - np.cos(slowest * time)).max() < 1e-5

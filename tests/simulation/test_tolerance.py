@@ -73,7 +73,7 @@ def assert_kept_or_refused(case: Case, *, easily_kept: float) -> None:
     assert_kept(easy.run(), easily_kept)
 
 
-@settings(max_examples=100, deadline=None, derandomize=True)
+@settings(max_examples=70, deadline=None, derandomize=True)
 @given(
     scenes(),
     st.floats(-3.2, 3.2),

@@ -13,6 +13,7 @@ the velocity U of the can and any test function chi,
 The radius, the density, the can's length and gravity are 1.
 """
 
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -126,10 +127,8 @@ class Section:
         axis = -(self.pressure @ slowest) / (can_ratio * self.area)
         wall = self.boundary[: self.on_wall]
         along_wall = self.weights[: self.on_wall]
-        inside, areas = self._inside()
-        points = np.concatenate([self.boundary, inside, inside + APART, inside - APART])
-        weights = np.append(self.weights, np.zeros(3 * len(inside)))
-        _, slopes = _harmonic(points, weights, self.corner)
+        inside, areas = self._inside
+        slopes = self._slopes
         slope = linalg.solve_triangular(self.factor, slowest, lower=True, trans="T") @ slopes
         surface = slice(self.on_wall, len(self.boundary))
         within, above, below = np.split(slope[len(self.boundary) :], 3)
@@ -148,6 +147,16 @@ class Section:
             bulk=areas @ abs(curvature) ** 2 / scale,
         )
 
+    @cached_property
+    def _slopes(self) -> np.ndarray:
+        """Slopes of the functions on the boundary, at the nodes inside, and `APART` from these."""
+        inside, _ = self._inside
+        points = np.concatenate([self.boundary, inside, inside + APART, inside - APART])
+        weights = np.append(self.weights, np.zeros(3 * len(inside)))
+        _, slopes = _harmonic(points, weights, self.corner)
+        return slopes
+
+    @cached_property
     def _inside(self) -> tuple[np.ndarray, np.ndarray]:
         """Nodes all over half of the cross-section, and their areas."""
         distance, weights = _towards_a_corner(RAYS)

@@ -50,7 +50,7 @@ def require_taylor(scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float)
 
 @pytest.mark.slow
 @taylor.NEEDED
-@settings(max_examples=25, deadline=None, derandomize=True)
+@settings(max_examples=16, deadline=None, derandomize=True)
 @given(
     scenes(),
     st.floats(-3, 3),

@@ -173,6 +173,7 @@ def test_marks_on_the_board_undo_an_oblique_camera(tmp_path: pathlib.Path) -> No
     assert not warned(result, "model is wrong"), result
 
 
+@pytest.mark.costly
 def test_an_oblique_camera_is_doubted_without_marks(tmp_path: pathlib.Path) -> None:
     path, marks = seen_obliquely(tmp_path)
     scale = float(np.hypot(*(marks[2] - marks[0])[:2])) / 1.2
@@ -220,7 +221,7 @@ def test_points_that_were_mistaken_change_nothing() -> None:
 def test_tracked_angles_give_the_scale_and_the_start(free: tuple[str, ...]) -> None:
     """The mark turns by the way over the radius; the load is let go 0.3 rad beyond the level."""
     start = 0.3 - OIL.incline
-    true = filmed(OIL, start, noise=0.0)
+    true = filmed(OIL, start, noise=0.0, seconds=2.0)
     since = true.time - RELEASED
     phi = np.full(len(since), start)
     phi[since > 0] = exact(OIL, since[since > 0], start).phi

@@ -290,7 +290,7 @@ OPTIONS = {
     ),
 }
 """The options of each command; those of a scene come before them."""
-_ROLLS = ("--rolling", "--friction", "--tolerance", "--camera")
+_FOR_ROLLING = ("--rolling", "--friction", "--tolerance", "--camera")
 """Options of a can that rolls, which a can that stands does not have."""
 
 
@@ -321,7 +321,7 @@ def scene_options(name: str, command: str) -> list[Option]:
         if argument in defaults
     ]
     if name == "standing":
-        return options + [option for option in OPTIONS[command] if option.name not in _ROLLS]
+        return options + [option for option in OPTIONS[command] if option.name not in _FOR_ROLLING]
     if command != "fit":
         phi0 = "initial phi [degrees]: 0 with the load nearest to the incline"
         phi_dot0 = "initial rate of change of phi [degrees/s]"
@@ -347,7 +347,7 @@ def _defaults(name: str) -> dict[str, Any]:
     return defaults
 
 
-def steps(given: Namespace) -> dict[str, Any]:
+def model_arguments(given: Namespace) -> dict[str, Any]:
     """Return the options that say how a scene is modelled and stepped, if they are given."""
     names = ("rolling", "integrator", "timestep", "tolerance", "friction")
     return {
@@ -355,7 +355,7 @@ def steps(given: Namespace) -> dict[str, Any]:
     }
 
 
-def start(given: Namespace) -> dict[str, Any]:
+def start_arguments(given: Namespace) -> dict[str, Any]:
     """Return the initial phi0 [rad] and phi_dot0 [rad/s].
 
     A note is printed if phi0 looks like radians, as 3.14159 does.

@@ -13,7 +13,7 @@ import numpy as np
 
 from mjbeer import require
 from mjbeer.checks.as_json import json_values, to_json
-from mjbeer.cli.arguments import angle, scene, start, steps
+from mjbeer.cli.arguments import angle, model_arguments, scene, start_arguments
 from mjbeer.drawing.words import damping_in_words
 from mjbeer.exceptions import LiquidWarning, MjbeerError, ParameterError, RenderingError
 from mjbeer.model.setting import FRICTION, supported
@@ -51,19 +51,19 @@ class KeyFigure(NamedTuple):
 
 
 class Summary:
-    """The key figures of a trajectory, and until when a can would roll with some friction."""
+    """The key figures of a run, and until when a can would roll with some friction."""
 
-    def __init__(self, trajectory: "Run", friction: float = FRICTION) -> None:
-        self.trajectory = trajectory
+    def __init__(self, run: "Run", friction: float = FRICTION) -> None:
+        self.run = run
         self.friction = friction
         self.rolls_until = math.inf
         """Until when the can would roll without slipping [s]."""
         # Looking for that time takes a second run, which a can that never slips does not need.
-        if trajectory.record.needed_friction > friction:
-            self.rolls_until = trajectory.rolls_until(friction)
+        if run.record.needed_friction > friction:
+            self.rolls_until = run.rolls_until(friction)
         self.notes: list[str] = []
         # In contact the can simply slips, and the run's own warnings say so.
-        if trajectory.rolling != "contact" and math.isfinite(self.rolls_until):
+        if run.rolling != "contact" and math.isfinite(self.rolls_until):
             self.notes.append(
                 f"a real can would slip from t = {self.rolls_until:.6g} s "
                 f"with a friction coefficient of {friction:g}"
@@ -72,7 +72,7 @@ class Summary:
     @property
     def key_figures(self) -> list[KeyFigure]:
         """The key figures in the order in which they are printed."""
-        run = self.trajectory
+        run = self.run
         radius = run.scene.can.radius
         slip = run.slip / radius
         lift = run.lift / radius
@@ -116,7 +116,7 @@ class Summary:
     def json(self) -> str:
         """Return the figures as a JSON object, units in the names; infinity and NaN are null."""
         content = {figure.key: figure.value for figure in self.key_figures}
-        content |= {"warnings": self.trajectory.warnings, "notes": self.notes}
+        content |= {"warnings": self.run.warnings, "notes": self.notes}
         return to_json(content, indent=2)
 
 
@@ -171,14 +171,14 @@ def _steady_rolling(scene: Scene) -> list[KeyFigure]:
     ]
 
 
-def trajectory_of(given: Namespace) -> "Run":
+def run_of(given: Namespace) -> "Run":
     """Simulate the scene of a command line."""
     from mjbeer.simulation.simulate import simulate
 
-    thing = scene(given)
-    # `_warn` tells what the run warns of.
+    can = scene(given)
+    # `_print_warnings` tells what the run warns of.
     with warnings.catch_warnings(action="ignore", category=LiquidWarning):
-        return simulate(thing, given.duration, **start(given), **steps(given))
+        return simulate(can, given.duration, **start_arguments(given), **model_arguments(given))
 
 
 def simulate(given: Namespace) -> None:
@@ -191,21 +191,21 @@ def simulate(given: Namespace) -> None:
     to_file = given.output and not to_output
     with files.atomic_write(given.output) if to_file else nullcontext() as temporary:
         with terminal.status("simulating"):
-            summary = Summary(trajectory_of(given), given.friction)
-        if summary.trajectory.timestep is not None:
+            summary = Summary(run_of(given), given.friction)
+        if summary.run.timestep is not None:
             second = "estimating the error by a second run, which takes up to three times as long"
             with terminal.status(second):
-                _ = summary.trajectory.error_estimate
+                _ = summary.run.error_estimate
         if temporary:
-            temporary.write_text(csv(summary.trajectory), encoding="utf-8")
+            temporary.write_text(csv(summary.run), encoding="utf-8")
     if temporary:
         say(f"wrote {given.output}")
     if to_output:
-        terminal.write(csv(summary.trajectory))
+        terminal.write(csv(summary.run))
         say(summary.text().rstrip())
     else:
         terminal.write(summary.json() if given.json else summary.text())
-    _warn(summary)
+    _print_warnings(summary)
 
 
 def render(given: Namespace) -> None:
@@ -221,8 +221,8 @@ def render(given: Namespace) -> None:
     if given.scene == "standing":
         _render_standing(given)
         return
-    trajectory = trajectory_of(given)
-    _warn(Summary(trajectory, given.friction))
+    trajectory = run_of(given)
+    _print_warnings(Summary(trajectory, given.friction))
     video.render(
         trajectory,
         given.output,
@@ -241,7 +241,7 @@ def _render_standing(given: Namespace) -> None:
     can = scene(given)
     if can.moving_modes == 0:
         say("note: nothing moves in this film, because the liquid is solid", "yellow")
-    film = StandingFilm(can, given.duration, **steps(given), speed=given.speed)
+    film = StandingFilm(can, given.duration, **model_arguments(given), speed=given.speed)
     render_standing(film, given.output, given.width, given.height)
     say(f"wrote {given.output}")
 
@@ -258,13 +258,13 @@ def view(given: Namespace) -> None:
     from mjbeer.model.build import START
     from mjbeer.model.export import export
 
-    thing = scene(given)
-    settings: dict[str, Any] = start(given) | steps(given)
-    if given.scene != "standing" and supported(thing, "equality"):
+    can = scene(given)
+    settings: dict[str, Any] = start_arguments(given) | model_arguments(given)
+    if given.scene != "standing" and supported(can, "equality"):
         settings.setdefault("rolling", "equality")
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "scene.xml"
-        export(thing, path, **settings, looks="full")
+        export(can, path, **settings, looks="full")
         model = mujoco.MjModel.from_xml_path(str(path))
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, model.key(START).id)
@@ -287,8 +287,8 @@ def export(given: Namespace) -> None:
     export(
         scene(given),
         given.output,
-        **start(given),
-        **steps(given),
+        **start_arguments(given),
+        **model_arguments(given),
         portable=given.portable,
         looks=given.looks,
     )
@@ -298,8 +298,8 @@ def export(given: Namespace) -> None:
     say(f"wrote {given.output}; {keyframe}")
 
 
-def _warn(summary: Summary) -> None:
-    run = summary.trajectory
+def _print_warnings(summary: Summary) -> None:
+    run = summary.run
     for warning in run.solver_warnings:
         say(f"equations not solved: {warning}", "yellow")
     for warning in (*run.rolling_warnings, *run.liquid_warnings):

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from mjbeer import require
-from mjbeer.cli.arguments import SCENES, make, scene_arguments, start, steps
+from mjbeer.cli.arguments import SCENES, make, model_arguments, scene_arguments, start_arguments
 from mjbeer.exceptions import ParameterError
 from mjbeer.output import files, terminal
 from mjbeer.output.folders import owned, replaced
@@ -28,7 +28,7 @@ def sweep(given: Namespace) -> None:
     if given.output.suffix not in _ENDINGS:
         endings = " or ".join(_ENDINGS)
         raise ParameterError(f"the file's name must end in {endings}, got {str(given.output)!r}")
-    options = scene_arguments(given) | start(given)
+    options = scene_arguments(given) | start_arguments(given)
     varied = [values for values in options.values() if isinstance(values, np.ndarray)]
     if given.output.suffix in _PLOTS and len(varied) not in (1, 2):
         raise ParameterError(
@@ -41,7 +41,7 @@ def sweep(given: Namespace) -> None:
     # The sweep writes this name of its function into its file, and resumes it under no other.
     make_scene.__module__ = "mjbeer"
     make_scene.__qualname__ = given.scene
-    options |= {"quantity": given.quantity, **steps(given)}
+    options |= {"quantity": given.quantity, **model_arguments(given)}
     if given.output.suffix == ".nc":
         # The sweep itself writes this file, again and again.
         result = sweep(make_scene, given.duration, output=given.output, **options)
@@ -160,7 +160,7 @@ def _with_degrees(failure: str, result: Any) -> str:
     The line names the scene as "incline[1] = 0.0349066, fill[0] = 0.3".
     """
 
-    def in_degrees(assignment: re.Match[str]) -> str:
+    def rewritten(assignment: re.Match[str]) -> str:
         name, place = assignment.groups()
         angles = _in_degrees(result[name])
         unit = angles.attrs["units"].replace("°", "degrees")
@@ -168,7 +168,7 @@ def _with_degrees(failure: str, result: Any) -> str:
 
     for name in result.dims:
         if "rad" in result[name].attrs.get("units", ""):
-            failure = re.sub(rf"\b({name})\[(\d+)\] = [^,)]+", in_degrees, failure)
+            failure = re.sub(rf"\b({name})\[(\d+)\] = [^,)]+", rewritten, failure)
     return failure
 
 

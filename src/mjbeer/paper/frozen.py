@@ -86,6 +86,7 @@ def _steepest_incline() -> float:
     return float(brentq(largest_acceleration, 0.2, 0.8, xtol=1e-15))
 
 
+@cache
 def _least_friction() -> Observation:
     """Return the least friction coefficient `mu` with which the can stays for a second."""
     scene = frozen()
@@ -102,13 +103,13 @@ def _least_friction() -> Observation:
 
 
 @cache
-def _mean_acceleration(part: float = 1.0) -> Observation:
-    """Return the axis's mean `acceleration` [m/s^2] in a roll-down with a `part` of b.
+def _mean_acceleration(offset_factor: float = 1.0) -> Observation:
+    """Return the axis's mean `acceleration` [m/s^2] in a roll-down, with b multiplied by a factor.
 
     The can starts at phi = pi. The mean is from the last whole turn that ends before 8 s to the
     last one that ends before 16 s.
     """
-    scene = footnote_scene(part)
+    scene = footnote_scene(offset_factor)
     run = simulate(scene, 16, math.pi, rolling="equality", integrator="DOP853")
     angles = []
     times = []
@@ -130,6 +131,7 @@ def _beside_theory() -> Observation:
     return Observation(**vars(observed), theory=exact(footnote_scene(), observed.time, math.pi).phi)
 
 
+@cache
 def _lift_off_time() -> Observation:
     """Return when a can that rolls down in contact lifts off [s].
 
@@ -292,7 +294,7 @@ CLAIMS = (
     ),
     Claim(
         "sec. A.3",
-        "the same by exact theory: that over (mean of sqrt(J))^2 / (3 m a^2/2)",
+        "the same by exact theory: that times (3 m a^2/2)/(mean of sqrt(J))^2",
         Witness(EQUALITY, _mean_acceleration),
         Bound(1e-3, "the start, as above"),
         residual="acceleration - 2*g*sin(alpha)/3/mean(sqrt(1 - 4*b/(3*a)*cos(turn)))**2",

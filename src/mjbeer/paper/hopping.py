@@ -6,7 +6,7 @@ is at the bottom.
 """
 
 import math
-from functools import partial
+from functools import cache, partial
 from types import SimpleNamespace
 from typing import Any
 
@@ -27,7 +27,7 @@ TOP = math.pi - 0.05
 """Angle phi [rad] at which a hoop is let go: a little beside pi, where it would stay in balance."""
 
 
-def rate(ratio: float, phi: float | np.ndarray) -> Any:
+def rate_squared(ratio: float, phi: float | np.ndarray) -> Any:
     """Return phi_dot^2 a/g of a hoop that fell from rest at the top, phi = pi.
 
     Energy is conserved: (2 M + 4 m sin^2(phi/2)) a^2 phi_dot^2/2 = m g a (1 + cos(phi)).
@@ -36,13 +36,15 @@ def rate(ratio: float, phi: float | np.ndarray) -> Any:
 
 
 def acceleration(ratio: float, phi: float | np.ndarray) -> Any:
-    """Return phi_ddot a/g, which is half the derivative of `rate` by phi."""
+    """Return phi_ddot a/g, which is half the derivative of `rate_squared` by phi."""
     return -np.sin(phi) * (1 + ratio / 2) / (ratio + 2 * np.sin(phi / 2) ** 2) ** 2
 
 
 def normal(ratio: float, phi: float | np.ndarray) -> Any:
     """Return N/(m g) = 1 + M/m + (sin(phi) phi_ddot + cos(phi) phi_dot^2) a/g."""
-    return 1 + ratio + np.sin(phi) * acceleration(ratio, phi) + np.cos(phi) * rate(ratio, phi)
+    return (
+        1 + ratio + np.sin(phi) * acceleration(ratio, phi) + np.cos(phi) * rate_squared(ratio, phi)
+    )
 
 
 def friction(ratio: float, phi: float | np.ndarray) -> Any:
@@ -51,7 +53,7 @@ def friction(ratio: float, phi: float | np.ndarray) -> Any:
     F/(m g) = -((1 + M/m) phi_ddot - cos(phi) phi_ddot + sin(phi) phi_dot^2) a/g.
     """
     turning = acceleration(ratio, phi)
-    return -((1 + ratio) * turning - np.cos(phi) * turning + np.sin(phi) * rate(ratio, phi))
+    return -((1 + ratio) * turning - np.cos(phi) * turning + np.sin(phi) * rate_squared(ratio, phi))
 
 
 def _least_normal(ratio: float) -> tuple[float, float]:
@@ -111,11 +113,13 @@ def takeoff(run: Run) -> float | None:
     return math.pi - float(run.phi[np.argmax(above)]) if above.any() else None
 
 
+@cache
 def _lifts_off() -> SimpleNamespace:
     """Return the angle from the top [rad] at which the hoop lifts off, simulated and by theory."""
     return SimpleNamespace(angle=takeoff(fall(RATIO, GRIP, 2e-5)), theory=lift_off(RATIO))
 
 
+@cache
 def _skids() -> SimpleNamespace:
     """Return the angle from the top [rad] at which the rim begins to slide, also by theory.
 
@@ -128,6 +132,7 @@ def _skids() -> SimpleNamespace:
     return SimpleNamespace(angle=angle, theory=slip(RATIO, MU))
 
 
+@cache
 def _height(rolling: Rolling) -> np.ndarray:
     """Return the height of the axis [radii] at each sample, for a hoop that starts with a push."""
     run = simulate(_hoop(RATIO), 0.3, -3.0, 16.0, rolling=rolling, timestep=1e-4, friction=GRIP)

@@ -59,12 +59,14 @@ def _ripple() -> Observation:
     )
 
 
+@cache
 def _furthest_from_rest() -> float:
     """Return the largest |phi| [rad] of beer that starts at rest at `_TOP`."""
     run = simulate(sliding(), 2.0, _TOP, integrator="DOP853")
     return float(np.abs(run.phi).max())
 
 
+@cache
 def _furthest_with_push() -> float:
     """Return the largest |phi| [rad] of beer that starts at phi = 0 with a push.
 
@@ -76,6 +78,7 @@ def _furthest_with_push() -> float:
     return float(np.abs(run.phi).max())
 
 
+@cache
 def _slope() -> float:
     """Return the exponent of Omega to which the ripple of phi at Omega is proportional."""
     turns = [loop(sliding(), phi_dot0) for phi_dot0 in _DECADE]
@@ -85,6 +88,7 @@ def _slope() -> float:
     return float(slope)
 
 
+@cache
 def _synthesis() -> Observation:
     """Return phi - Omega t [rad] during one turn, in two ways.
 
@@ -137,7 +141,7 @@ CLAIMS = (
     ),
     Claim(
         "(25)",
-        "amplitude of the ripple of u at 2 omega over that at omega: none; printed phi_0/2",
+        "amplitude of the ripple of u at 2 omega, divided by that at omega: none; printed phi_0/2",
         _HESITATES,
         Bound(1e-9, "rounding: sin(phi) swings alike to both sides"),
         residual="ripple[2]",

@@ -2,7 +2,7 @@
 
 import math
 from functools import cache, partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import mujoco
 import numpy as np
@@ -52,43 +52,17 @@ def watch(
     times = np.linspace(0, duration, samples)
     run = simulate(scene, duration, phi0, phi_dot0, rolling, integrator, timestep, times=times)
     model = build(scene, rolling, integrator="DOP853", timestep=timestep)
-    data = mujoco.MjData(model)
-    joints = joint_addresses(model)
-    can = model.body("can").id
-    # A frozen load belongs to the body of the can.
-    carrier = model.body("load").id if "swing" in joints else can
-    # Of axis and load: position, velocity and acceleration, each with three components.
-    axis = np.empty((samples, 3, 3))
-    load = np.empty((samples, 3, 3))
-    phi_dot = np.zeros(samples)
-    phi_ddot = np.zeros(samples)
-    potential = np.zeros(samples)
-    kinetic = np.zeros(samples)
-    friction = np.zeros(samples)
-    for k, state in enumerate(to_states(model, run)):
-        data.qpos[:], data.qvel[:] = np.split(state, [model.nq])
-        mujoco.mj_forward(model, data)
-        mujoco.mj_energyPos(model, data)
-        mujoco.mj_energyVel(model, data)
-        centre = data.xpos[carrier] - data.xmat[carrier].reshape(3, 3)[:, 2] * scene.load.offset
-        axis[k] = _point_motion(model, data, data.xpos[can].copy(), can)
-        load[k] = _point_motion(model, data, centre, carrier)
-        rotation = np.zeros((3, model.nv))
-        mujoco.mj_jac(model, data, None, rotation, data.xpos[carrier], carrier)
-        phi_dot[k] = rotation[1] @ data.qvel
-        phi_ddot[k] = rotation[1] @ data.qacc
-        potential[k], kinetic[k] = data.energy
-        if "slide" in joints:
-            friction[k] = -data.qfrc_constraint[model.joint("slide").dofadr[0]]
-    down = model.opt.gravity / scene.gravity
+    computed = _forward_dynamics(model, scene, to_states(model, run))
+    gravity = model.opt.gravity
+    down = gravity / scene.gravity
     # A quarter turn from gravity.
     forward = np.array([-down[2], 0, down[0]])
-    arm = load[:, 0] - axis[:, 0]
+    arm = computed.load[:, 0] - computed.axis[:, 0]
     # The height at which the axis starts, in the coordinates of the model.
-    start = axis[0, 0, 2]
-    s, s_dot, s_ddot = load[:, :, 0].T
-    u, u_dot, u_ddot = axis[:, :, 0].T
-    across, across_dot, across_ddot = (load - axis)[:, :, 2].T
+    start = computed.axis[0, 0, 2]
+    s, s_dot, s_ddot = computed.load[:, :, 0].T
+    u, u_dot, u_ddot = computed.axis[:, :, 0].T
+    across, across_dot, across_ddot = (computed.load - computed.axis)[:, :, 2].T
     return Observation.of(
         scene,
         time=run.time,
@@ -102,14 +76,70 @@ def watch(
         across_dot=across_dot,
         across_ddot=across_ddot,
         phi=run.phi,
-        phi_dot=phi_dot,
-        phi_ddot=phi_ddot,
+        phi_dot=computed.phi_dot,
+        phi_ddot=computed.phi_ddot,
         theta=np.arctan2(-arm @ forward, arm @ down),
-        height=-(load[:, 0] - [0, 0, start]) @ down,
-        kinetic=kinetic,
-        potential=potential + scene.mass * model.opt.gravity[2] * start,
-        friction=friction,
+        height=-(computed.load[:, 0] - [0, 0, start]) @ down,
+        kinetic=computed.kinetic,
+        potential=computed.potential + scene.mass * gravity[2] * start,
+        friction=computed.friction,
     )
+
+
+class _ForwardDynamics(NamedTuple):
+    """What MuJoCo computes from the states of a motion, in the coordinates of its model."""
+
+    axis: np.ndarray
+    """Position, velocity and acceleration of the can's axis, shape (samples, 3, 3)."""
+    load: np.ndarray
+    """Those of the load's centre of mass."""
+    phi_dot: np.ndarray
+    """[rad/s]."""
+    phi_ddot: np.ndarray
+    """[rad/s^2]."""
+    potential: np.ndarray
+    """[J]."""
+    kinetic: np.ndarray
+    """[J]."""
+    friction: np.ndarray
+    """Force of the incline on the can, uphill [N]."""
+
+
+def _forward_dynamics(model: mujoco.MjModel, scene: Scene, states: np.ndarray) -> _ForwardDynamics:
+    """Return what MuJoCo's forward dynamics computes at `states`, shape (samples, nq + nv)."""
+    samples = len(states)
+    computed = _ForwardDynamics(
+        axis=np.empty((samples, 3, 3)),
+        load=np.empty((samples, 3, 3)),
+        phi_dot=np.zeros(samples),
+        phi_ddot=np.zeros(samples),
+        potential=np.zeros(samples),
+        kinetic=np.zeros(samples),
+        friction=np.zeros(samples),
+    )
+    data = mujoco.MjData(model)
+    joints = joint_addresses(model)
+    can = model.body("can").id
+    # A frozen load belongs to the body of the can.
+    carrier = model.body("load").id if "swing" in joints else can
+    for sample, state in enumerate(states):
+        data.qpos[:], data.qvel[:] = np.split(state, [model.nq])
+        mujoco.mj_forward(model, data)
+        mujoco.mj_energyPos(model, data)
+        mujoco.mj_energyVel(model, data)
+        upward = data.xmat[carrier].reshape(3, 3)[:, 2]
+        centre = data.xpos[carrier] - scene.load.offset * upward
+        computed.axis[sample] = _point_motion(model, data, data.xpos[can].copy(), can)
+        computed.load[sample] = _point_motion(model, data, centre, carrier)
+        rotation = np.zeros((3, model.nv))
+        mujoco.mj_jac(model, data, None, rotation, data.xpos[carrier], carrier)
+        computed.phi_dot[sample] = rotation[1] @ data.qvel
+        computed.phi_ddot[sample] = rotation[1] @ data.qacc
+        computed.potential[sample], computed.kinetic[sample] = data.energy
+        if "slide" in joints:
+            slide = model.joint("slide").dofadr[0]
+            computed.friction[sample] = -data.qfrc_constraint[slide]
+    return computed
 
 
 def _point_motion(
@@ -136,13 +166,13 @@ def oscillate(
     return Observation.of(scene, omega=run.frequency(), rest=scene.equilibrium())
 
 
-def footnote_scene(part: float = 1.0) -> Scene:
-    """Return the scene of footnote 8, with b multiplied by `part`.
+def footnote_scene(offset_factor: float = 1.0) -> Scene:
+    """Return the scene of footnote 8, with b multiplied by a factor.
 
     It has a = 3 cm, b = 1 cm, alpha = 10 degrees, g = 980 cm/s^2 and I_axis = m a^2/2.
     """
     a = 0.03
-    b = 0.01 * part
+    b = 0.01 * offset_factor
     load = Load(mass=1.0, offset=b, inertia=1.0 * (a**2 / 2 - b**2))
     return Scene(Can.massless(a), load, math.radians(10), "frozen", gravity=9.8)
 

@@ -6,9 +6,9 @@ import pathlib
 import platform
 import re
 from collections.abc import Generator, Sequence
-from contextlib import closing
+from contextlib import closing, suppress
 from dataclasses import dataclass, field
-from importlib.metadata import distributions
+from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
 from rich.console import Console
@@ -137,14 +137,15 @@ def run_checks(checks: Sequence[Check], console: Console | None) -> Generator[Re
 def machine() -> dict[str, Any]:
     """Return what run times and rounding depend on: processor, system and versions of packages."""
     versions = {}
-    for distribution in distributions():
-        versions[distribution.name] = distribution.version
+    for name in _PACKAGES:
+        with suppress(PackageNotFoundError):
+            versions[name] = version(name)
     return {
         "processor": _processor(),
         "cores": os.cpu_count(),
         "system": platform.platform(terse=True),
         "python": platform.python_version(),
-        "versions": {name: versions[name] for name in _PACKAGES if name in versions},
+        "versions": versions,
     }
 
 

@@ -27,7 +27,7 @@ def doubts(
     minimum: Minimum, alike: Sequence[Minimum], unknowns: Sequence[Unknown]
 ) -> tuple[str, ...]:
     """Return the doubts about a minimum; `alike` are those that the track cannot tell apart."""
-    found = [
+    all_doubts = [
         *_smooth_residuals(minimum),
         *_wrong_measurements(minimum, unknowns),
         *_open_directions(minimum, unknowns),
@@ -35,7 +35,7 @@ def doubts(
         *_other_motions(minimum, alike, unknowns),
         *_left_out_points(minimum),
     ]
-    return tuple(dict.fromkeys(found))
+    return tuple(dict.fromkeys(all_doubts))
 
 
 def chance_of_white_noise(residuals: np.ndarray) -> float:

@@ -148,7 +148,7 @@ def _minimize(
     low = to_variables(unknowns, {unknown.name: unknown.low for unknown in unknowns})
     high = to_variables(unknowns, {unknown.name: unknown.high for unknown in unknowns})
     start = np.clip(to_variables(unknowns, values), low, high)
-    found = optimize.least_squares(
+    solution = optimize.least_squares(
         _residuals,
         start,
         jac=derivatives,
@@ -159,15 +159,15 @@ def _minimize(
         diff_step=1e-6,
         max_nfev=100,
     )
-    next_weights = _suitable_weights(model, to_values(unknowns, found.x), len(unknowns))
+    next_weights = _suitable_weights(model, to_values(unknowns, solution.x), len(unknowns))
     return Minimum(
-        variables=found.x,
-        residuals=found.fun,
-        jacobian=found.jac,
-        converged=found.status > 0,
+        variables=solution.x,
+        residuals=solution.fun,
+        jacobian=solution.jac,
+        converged=solution.status > 0,
         weights=weights,
         next_weights=next_weights,
-        cost=cost(next_weights, found.fun[model.data.size :]),
+        cost=cost(next_weights, solution.fun[model.data.size :]),
     )
 
 

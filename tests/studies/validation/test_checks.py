@@ -20,10 +20,10 @@ CHECKS = {f"{check.name} - {check.by}": check for check in checks()}
 
 
 def params() -> list[Any]:
-    """Every check; the fits of six noisy tracks each take seconds."""
+    """Every check; fits take seconds, and the tests of `fit` have others."""
     marked = []
     for name, check in CHECKS.items():
-        mark = pytest.mark.costly if "standard errors" in name else pytest.mark.slow
+        mark = pytest.mark.costly if check.group == "tracks" else pytest.mark.slow
         marked.append(pytest.param(check, id=name, marks=mark))
     return marked
 

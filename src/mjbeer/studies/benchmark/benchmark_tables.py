@@ -67,7 +67,7 @@ def write(study: Benchmark, folder: pathlib.Path) -> None:
 
 def tables(study: Benchmark) -> list[Table]:
     """Return the tables of a study that have rows, in the order in which they are shown."""
-    found = [
+    all_tables = [
         ratios(study, COMPARED),
         ratios(study, (FINEST,)),
         evaluations(study),
@@ -76,7 +76,7 @@ def tables(study: Benchmark) -> list[Table]:
         *(cheapest(study, case) for case in study.cases),
         *(convergence(study, case) for case in study.cases),
     ]
-    return [table for table in found if table.rows]
+    return [table for table in all_tables if table.rows]
 
 
 def ratios(study: Benchmark, errors: Sequence[float]) -> Table:
@@ -86,8 +86,8 @@ def ratios(study: Benchmark, errors: Sequence[float]) -> Table:
     brackets.
     """
 
-    def cell(best: Sequence[Point], found: Sequence[Point], error: float) -> str:
-        ratio = points.time_ratio(found, best, error)
+    def cell(best: Sequence[Point], other: Sequence[Point], error: float) -> str:
+        ratio = points.time_ratio(other, best, error)
         if ratio is None:
             return "-"
         rounds = f"{two_digits(ratio.smallest)} to {two_digits(ratio.largest)}"
@@ -106,12 +106,12 @@ def ratios(study: Benchmark, errors: Sequence[float]) -> Table:
 def evaluations(study: Benchmark) -> Table:
     """Return the number of evaluations of the fastest settings within each error."""
 
-    def count(found: Sequence[Point], error: float) -> str:
-        best = points.cheapest(found, error)
+    def count(other: Sequence[Point], error: float) -> str:
+        best = points.cheapest(other, error)
         return "-" if best is None or best.evaluations is None else f"{best.evaluations:,}"
 
     title = "Evaluations of the accelerations"
-    return _comparison(study, COMPARED, title, count, lambda _, found, error: count(found, error))
+    return _comparison(study, COMPARED, title, count, lambda _, other, error: count(other, error))
 
 
 def _comparison(
@@ -125,8 +125,9 @@ def _comparison(
     rows = []
     for case in study.cases:
         best = _reduced(study, case)
+        others = [_of(study, case, name) for name in OTHERS]
         for error in errors:
-            cells = [cell(best, _of(study, case, name), error) for name in OTHERS]
+            cells = [cell(best, other, error) for other in others]
             rows.append((f"{case}, {error:.0e} rad", best_cell(best, error), *cells))
     return Table(title, ("error", "best reduced", *OTHERS), rows)
 
@@ -227,13 +228,13 @@ def _seconds(times: Sequence[float]) -> str:
 
 def cheapest(study: Benchmark, case: str) -> Table:
     """Return the fastest setting of a case for each error and way of rolling, with its run time."""
-    found = study.of(case)
-    rollings = [name for name in ROLLINGS if any(point.model == name for point in found)]
+    of_case = study.of(case)
+    rollings = [name for name in ROLLINGS if any(point.model == name for point in of_case)]
     rows = []
     for level in points.LEVELS:
         cells = []
         for rolling in rollings:
-            best = points.cheapest([point for point in found if point.model == rolling], level)
+            best = points.cheapest([point for point in of_case if point.model == rolling], level)
             cells.append("not reached" if best is None else f"{best.setting}: {spread(best.times)}")
         rows.append((f"{level:.0e} rad", *cells))
     title = f"{case}: fastest setting for an error, and its run time"
@@ -245,10 +246,10 @@ def convergence(study: Benchmark, case: str) -> Table:
 
     The order is the power of the timestep with which the error has fallen since the row above.
     """
-    found = study.of(case)
-    curves = [curve for curve in _CONTACT if any(point.curve == curve for point in found)]
+    of_case = study.of(case)
+    curves = [curve for curve in _CONTACT if any(point.curve == curve for point in of_case)]
     errors = {
-        curve: {point.value: point.error for point in found if point.curve == curve}
+        curve: {point.value: point.error for point in of_case if point.curve == curve}
         for curve in curves
     }
     timesteps = sorted({step for of_curve in errors.values() for step in of_curve}, reverse=True)

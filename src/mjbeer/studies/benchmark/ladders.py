@@ -9,7 +9,7 @@ from mjbeer.studies.benchmark.other_tools import (
     HEYOKA,
     OTHER_TOOLS,
 )
-from mjbeer.studies.benchmark.points import CHOSEN, TOLERANCE, USUAL, Case, Curve
+from mjbeer.studies.benchmark.points import CHOSEN, STOCK, TOLERANCE, Case, Curve
 from mjbeer.theory.scene import Scene
 
 Ladders = dict[Curve, tuple[float, ...]]
@@ -50,7 +50,7 @@ def _short_ladders(scene: Scene, quick: bool) -> Ladders:
         if rolling != "contact":  # a contact is too soft for a tolerance
             curves[Curve(rolling, CHOSEN, TOLERANCE)] = tolerances
     curves[Curve("reduced", "GaussJackson")] = of_gauss_jackson
-    for name, rolling in USUAL.items():
+    for name, rolling in STOCK.items():
         if supported(scene, rolling):
             curves[Curve(name, "Euler")] = of_mujoco
     for name, tool in OTHER_TOOLS.items():

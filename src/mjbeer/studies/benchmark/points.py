@@ -78,7 +78,7 @@ CHOSEN = "mjbeer"
 """The method of runs to a tolerance, in which mjbeer chooses the integrator and its steps."""
 LEVELS = tuple(10.0**-k for k in range(2, 13, 2))
 """The errors [rad] for which tables show the fastest setting."""
-USUAL: dict[str, Rolling] = {"equality, defaults": "equality", "contact, defaults": "contact"}
+STOCK: dict[str, Rolling] = {"equality, defaults": "equality", "contact, defaults": "contact"}
 """Models as people usually write them, each with its way of rolling."""
 
 

@@ -27,7 +27,7 @@ from mjbeer.simulation.solve import solve
 from mjbeer.simulation.stepped_model import SteppedModel
 from mjbeer.studies.benchmark import ladders, other_tools
 from mjbeer.studies.benchmark.other_tools import OTHER_TOOLS, Samples, Solver
-from mjbeer.studies.benchmark.points import CASES, TIMESTEP, USUAL, Benchmark, Case, Point
+from mjbeer.studies.benchmark.points import CASES, STOCK, TIMESTEP, Benchmark, Case, Point
 from mjbeer.studies.study import machine
 from mjbeer.theory.record import Record
 from mjbeer.theory.scene import Scene
@@ -129,7 +129,7 @@ def _set_up(case: Case, point: Point) -> Solver:
     """Set up a point: another tool, a model as people usually write it, or a setting of mjbeer."""
     if point.model in OTHER_TOOLS:
         return OTHER_TOOLS[point.model].set_up(case, point.value)
-    if point.model in USUAL:
+    if point.model in STOCK:
         return _set_up_usual(case, point)
     return _set_up_setting(case, point)
 
@@ -152,7 +152,7 @@ def usual_model(name: str, scene: Scene) -> mujoco.MjModel:
 
     The equality is written as u = a roll, in metres.
     """
-    spec = specify(scene, USUAL[name], integrator="Euler", timestep=2e-3)
+    spec = specify(scene, STOCK[name], integrator="Euler", timestep=2e-3)
     stock = mujoco.MjSpec().option
     spec.option.enableflags = stock.enableflags
     spec.option.impratio = stock.impratio

@@ -106,8 +106,8 @@ def fitted(track: Track, filmed_scene: FilmedScene, bend: float | None = None) -
 def _incline_error(filmed_scene: FilmedScene) -> float:
     """Return the error of the incline [rad] without noise."""
     track = filmed(filmed_scene.scene, filmed_scene.phi0)
-    found = fitted(track, filmed_scene, bend=0.0)
-    return found.values["incline"] - filmed_scene.scene.incline
+    result = fitted(track, filmed_scene, bend=0.0)
+    return result.values["incline"] - filmed_scene.scene.incline
 
 
 def _excess_of_squares(filmed_scene: FilmedScene) -> float:
@@ -118,9 +118,9 @@ def _excess_of_squares(filmed_scene: FilmedScene) -> float:
     squares = []
     for seed in range(_TRACKS):
         track = filmed(scene, filmed_scene.phi0, np.random.default_rng(seed))
-        found = fitted(track, filmed_scene)
-        errors = [(found.values[name] - truth[name]) / found.errors[name] for name in names]
+        result = fitted(track, filmed_scene)
+        errors = [(result.values[name] - truth[name]) / result.errors[name] for name in names]
         deviations = np.array(errors)
-        whitened = np.linalg.solve(found.correlation[:2, :2], deviations)
+        whitened = np.linalg.solve(result.correlation[:2, :2], deviations)
         squares.append(float(deviations @ whitened) / 2)
     return float(np.mean(squares)) - 1
