@@ -107,7 +107,7 @@ STORIES = (
     Story(
         "looping",
         "Beer loops unevenly in its can, slow or fast",
-        in_words(sliding()),
+        f"{in_words(sliding())}; the fast can would lift off, and is kept on it",
         "The beer loops in its can. The plots show how far it is ahead of an even rotation, over "
         "one turn. By eqs. (26) and (28) it is ahead in one half of the turn and behind in the "
         "other. In truth there is a second ripple, twice in a turn, which remains however fast the "
