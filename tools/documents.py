@@ -34,9 +34,7 @@ from mjbeer.studies.engines import engine_plot, engine_tables, findings
 from mjbeer.studies.engines.results import Results
 from mjbeer.studies.stability import stability_maps, stability_study
 from mjbeer.studies.stability.judge import (
-    JUDGES,
     NOBODY,
-    REFUSED,
     RIGHT,
     SERIES,
     THEORY,
@@ -69,6 +67,7 @@ COUNTS = json.loads((CHECKOUT / "docs" / "stability.json").read_text(encoding="u
 BENCHMARK = Benchmark.load(SHIPPED)
 MAPS = stability_maps.load().maps
 ENGINES = Results.load()
+EXPONENT = re.compile(r"\d(\.\d+)?e[-+]\d+")
 MARKED = re.compile(r"(<!-- made: (?P<name>[\w-]+) -->\n).*?(<!-- end -->)", re.DOTALL)
 LEFT_OUT = ("sliding-metal",)  # it takes as long as the massless can, within 5 %
 PEERS = {"mujoco": "MuJoCo", "scipy": "SciPy", "numba": "numba", "heyoka": "heyoka"}
@@ -98,6 +97,38 @@ def table(
 def plain(shown: Table) -> str:
     """Return a table without its title as Markdown."""
     return table(shown.columns, shown.rows, shown.left)
+
+
+def readable(shown: Table) -> Table:
+    """Return a table whose numbers have no more exponent than they need: 1e-6 and 4.6."""
+
+    def shortened(found: re.Match[str]) -> str:
+        number = float(found[0])
+        if number >= 0.01:
+            return benchmark_tables.two_digits(number)
+        digits, _, power = found[0].partition("e")
+        return f"{digits}e{int(power)}"
+
+    rows = [tuple(EXPONENT.sub(shortened, cell) for cell in row) for row in shown.rows]
+    return Table(shown.title, shown.columns, rows, shown.left)
+
+
+def in_milliseconds(shown: Table, first: int, last: int) -> Table:
+    """Return a table with the unit of the times in the heads of their columns.
+
+    These columns are the `first` to the `last` one.
+    """
+
+    def without(row: Sequence[str]) -> tuple[str, ...]:
+        return tuple(
+            cell.replace(" ms", "") if first <= at <= last else cell for at, cell in enumerate(row)
+        )
+
+    columns = tuple(
+        f"{name} [ms]" if any(" ms" in row[at] for row in shown.rows) else name
+        for at, name in enumerate(shown.columns)
+    )
+    return Table(shown.title, columns, [without(row) for row in shown.rows], shown.left)
 
 
 def prose(text: str, indent: str = "") -> str:
@@ -130,24 +161,22 @@ def holds() -> str:
             ),
             (
                 "**run time**",
-                f"on the same model MuJoCo's RK4 takes {ratio(RK4, 1e-3)} times as long as "
-                f"mjbeer's best setting for an error of 1e-3 rad, and {ratio(RK4, 1e-6)} times for "
-                f"1e-6 rad; compiled equations without MuJoCo take {ratio(COMPILED_DOP853, 1e-6)} "
-                f"times as long with DOP853, and {ratio(HEYOKA, 1e-6)} times with heyoka, for "
-                "1e-6 rad ([error against run time](docs/benchmark.md))",
+                f"for an error of 1e-6 rad MuJoCo's RK4 needs {ratio(RK4, 1e-6)} times the time of "
+                "mjbeer's best setting on the same model; tools that integrate compiled equations "
+                f"without MuJoCo need {ratio(COMPILED_DOP853, 1e-6)} of it (DOP853) or "
+                f"{ratio(HEYOKA, 1e-6)} (heyoka) ([error against run time](docs/benchmark.md))",
             ),
             (
                 "**stability**",
                 f"the longest stable timestep of a swing is within {border_error():.2g} % of "
-                f"linear theory; {trusted(random):,} of {ended(random):,} new random runs were "
-                f"trusted, and {wrong_of(random)}{at_most(random)}; "
-                f"{random.get(stability_study.NEEDLESS, 0):,} others were doubted although they "
-                f"were right; {alone(random):,} had one independent check instead of two "
-                "([stability](docs/stability.md))",
+                f"linear theory; of {ended(random):,} new random runs, many of them deliberately "
+                f"extreme or impossible, {trusted(random):,} were trusted, and "
+                f"{wrong_of(random)}{at_most(random)} ([stability](docs/stability.md))",
             ),
             (
                 "**the paper**",
-                f"an audit of its 61 equations has {len(paper.claims())} rows; "
+                f"an audit of its 61 equations, footnotes and figures has {len(paper.claims())} "
+                "rows; "
                 f"{sum(wrong.values())} hold only after a correction: {wrong[MISPRINT]} misprints, "
                 f"{wrong[CONSEQUENCE]} consequences of one, and {wrong[APPROXIMATION]} "
                 "approximations that leave out too much ([the physics](docs/physics.md))",
@@ -159,8 +188,8 @@ def holds() -> str:
 
 def gauss_jackson() -> str:
     """How many times more evaluations DOP853 takes than Gauss-Jackson."""
-    columns = ("", *(f"to {error:g} rad" for error in gauss_jackson_figure.ERRORS))
-    return table(columns, gauss_jackson_figure.rows())
+    columns = ["", *(f"to 1e{math.log10(error):.0f} rad" for error in gauss_jackson_figure.ERRORS)]
+    return table(tuple(columns), gauss_jackson_figure.rows())
 
 
 def misprints() -> str:
@@ -201,7 +230,9 @@ def others() -> str:
     shown = without_columns(some(ratios), [COMPILED_ODEINT])
     # A ratio is followed by its range in brackets.
     rows = [(row[0], row[1], *(cell.partition(" (")[0] for cell in row[2:])) for row in shown.rows]
-    return f"{table(shown.columns, rows).rstrip()}\n\n{scatter()}"
+    without_ranges = Table(shown.title, shown.columns, rows, shown.left)
+    times_alone = in_milliseconds(readable(without_ranges), 1, 1)
+    return f"{plain(times_alone).rstrip()}\n\n{scatter()}"
 
 
 def scatter() -> str:
@@ -221,20 +252,22 @@ def scatter() -> str:
 
 def whole_calls() -> str:
     """Times of whole calls."""
-    return plain(some(benchmark_tables.whole_calls(BENCHMARK), (*LEFT_OUT, "1e-03")))
+    shown = some(benchmark_tables.whole_calls(BENCHMARK), (*LEFT_OUT, "1e-03"))
+    return plain(in_milliseconds(readable(shown), 1, len(shown.columns)))
 
 
 def long_run() -> str:
     """Errors and drifts of a motion of 1,000 s."""
     (case,) = BENCHMARK.long_cases
     left_out = ("RK4 4 ms", "DOP853 16 ms", "to 1e-06", "compiled equations to 1e-09")
-    return plain(some(benchmark_tables.drift(BENCHMARK, case), left_out))
+    return plain(readable(some(benchmark_tables.drift(BENCHMARK, case), left_out)))
 
 
 def contact() -> str:
-    """Errors of a contact, at every other timestep."""
-    shown = benchmark_tables.convergence(BENCHMARK, "frozen")
-    return table(shown.columns[:4], [row[:4] for row in shown.rows[1::2]])
+    """Errors of a contact at timesteps from 8 ms to 0.125 ms."""
+    shown = benchmark_tables.convergence(BENCHMARK, "frozen", 4)
+    rows = [row[:4] for row in shown.rows[1:9:2]]
+    return plain(readable(Table(shown.title, shown.columns[:4], rows, shown.left)))
 
 
 def measured() -> str:
@@ -250,19 +283,13 @@ def measured() -> str:
 
 
 def ranges() -> str:
-    """Sentences on RK4 and on the tools without MuJoCo."""
-    finest = benchmark_tables.FINEST
-    return prose(
-        f"On the same model MuJoCo's RK4 takes {ratio(RK4, 1e-3)} times as long as mjbeer's best "
-        f"setting for an error of 1e-3 rad, and {ratio(RK4, 1e-6)} times for 1e-6 rad. "
-        f"For 1e-11 rad it takes {ratio(RK4, finest)} times as long, because it has order 4 and "
-        "Gauss-Jackson order 13. "
-        f"Of the tools without MuJoCo, heyoka takes {ratio(HEYOKA, 1e-3)} times as long as "
-        f"mjbeer's best setting for 1e-3 rad, and {ratio(HEYOKA, 1e-6)} times for 1e-6 rad; "
-        f"DOP853 on compiled equations takes {ratio(COMPILED_DOP853, 1e-3)} and "
-        f"{ratio(COMPILED_DOP853, 1e-6)} times as long; "
-        f"SciPy's odeint takes {ratio(ODEINT, 1e-3)} and {ratio(ODEINT, 1e-6)} times as long."
-    )
+    """Run times of RK4 and of the tools without MuJoCo, over all scenes."""
+    errors = (*benchmark_tables.COMPARED, benchmark_tables.FINEST)
+    columns = ["run time divided by mjbeer's", *(f"to {error:.0e} rad" for error in errors)]
+    lines = []
+    for name in (RK4, ODEINT, COMPILED_DOP853, HEYOKA):
+        lines.append((name, *(ratio(name, error) for error in errors)))
+    return table(tuple(column.replace("e-0", "e-") for column in columns), lines)
 
 
 def stable_slip(integrator: str) -> float:
@@ -271,16 +298,19 @@ def stable_slip(integrator: str) -> float:
     Such a row has a damping and no stiffness. The limit is 1 under semi-implicit Euler, and half of
     the limit on the negative real axis under a Runge-Kutta method.
     """
-    if integrator == "discrete":
-        return math.inf
+    return math.inf if integrator == "discrete" else stable_decay(integrator) / 2
+
+
+def stable_decay(integrator: str) -> float:
+    """Return the largest h |s| with which exp(-|s| t) stays bounded, where it is explicit."""
     if integrator not in predictions.RUNGE_KUTTA:
-        return 1.0
+        return 2.0
     coefficients = predictions.polynomial(integrator)[::-1]
 
     def growth(rate: float) -> float:
         return abs(float(np.polyval(coefficients, -rate))) - 1
 
-    return predictions.first(growth, 0.1, 50.0) / 2
+    return predictions.first(growth, 0.1, 50.0)
 
 
 def steps() -> str:
@@ -310,6 +340,9 @@ def steps() -> str:
         longest = [limit(method) for method in methods]
         cells = ["no limit" if math.isinf(most) else f"{most:.2g}" for most in longest]
         lines.append((name, *cells))
+    explicit = [f"{stable_decay(method):.2g}" for method in ("Euler", *predictions.RUNGE_KUTTA)]
+    euler = f"{explicit[0]}, but no limit with implicit and implicitfast"
+    lines.insert(-1, ("damping, reduced: h\\|s\\| below", euler, "no limit", *explicit[1:]))
     columns = ("", "Euler, implicit, implicitfast", "discrete", "RK4", "DOP853 around MuJoCo")
     return table(columns, lines)
 
@@ -341,16 +374,12 @@ def border_error() -> float:
 
 
 def damped_runs() -> str:
-    """How the runs in the maps of damping ended."""
+    """How near the borders in the maps of damping are to linear theory."""
     maps = [drawn for drawn in MAPS if drawn.family == "damping"]
-    count: Counter[str] = Counter()
-    for drawn in maps:
-        count.update("".join(drawn.measured))
-    _, worst = stability_maps.summary(maps)
+    runs, worst = stability_maps.summary(maps)
     return prose(
-        f"Of {count.total():,} runs in these maps {count['0']:,} explode, {count['1']:,} are "
-        f"inaccurate and {count['2']:,} accurate. "
-        f"The borders between them agree with linear theory within {100 * worst:.2g} %."
+        f"In {runs:,} runs the borders of stability and of accuracy agree with linear theory "
+        f"within {100 * worst:.2g} %."
     )
 
 
@@ -376,7 +405,7 @@ def at_most(count: dict[str, int]) -> str:
     if share is None:
         return ""
     percent = stability_study.rounded_up(100 * share)
-    return f" (with 95 % confidence at most {percent} % of trusted runs are)"
+    return f" (at most {percent} % of such runs are, with 95 % confidence)"
 
 
 def alone(count: dict[str, int]) -> int:
@@ -389,48 +418,36 @@ def kinds() -> str:
     counted = stability_study.Totals(COUNTS["known"], COUNTS["kinds"])
     tables = stability_study.search_tables(counted)
     (shown,) = [found for found in tables if "by model" in found.title]
-    left_out = (*JUDGES, stability_study.ABOVE, stability_study.TWICE)
-    columns = [at for at, name in enumerate(shown.columns) if name not in left_out]
-    return table(
-        tuple(shown.columns[at] for at in columns),
-        [tuple(row[at] for at in columns) for row in shown.rows],
-    )
+    kept = ["runs", *VERDICTS, stability_study.NEEDLESS]
+    columns = [shown.columns.index(name) for name in kept]
+    by_runs = sorted(shown.rows, key=lambda row: (row[0] == "all", -int(row[columns[0]])))
+    lines = [(row[0], *(row[at] for at in columns)) for row in by_runs]
+    return table(("model and rolling", *kept), lines)
 
 
 def answer() -> str:
-    """Whether a run that is trusted was ever wrong."""
+    """Whether a run that is trusted was ever wrong, and what that allows."""
     found = COUNTS["kinds"]["all"]
     return prose(
-        f"A random search trusted {trusted(found):,} of {ended(found):,} runs, and "
-        f"{wrong_of(found)}."
+        f"A [random search](#the-random-search) trusted {trusted(found):,} of {ended(found):,} "
+        f"runs, and {wrong_of(found)}{at_most(found)}."
     )
 
 
 def honesty() -> str:
-    """How many runs were silent, and what that allows.
-
-    Then how often a run doubted itself, or its error, wrongly.
-    """
+    """What the table of `kinds` does not say: whether estimates and checks were good enough."""
     found = COUNTS["kinds"]["all"]
     known = COUNTS["known"]
     first = COUNTS["settings"][stability_study.FIRST]
-    needless = found.get(stability_study.NEEDLESS, 0)
     above = found.get(stability_study.ABOVE, 0)
     twice = found.get(stability_study.TWICE, 0)
-    outside = ended(COUNTS["kinds"].get(stability_study.OUTSIDE, {}))
-    refused = f"{found.get(REFUSED, 0):,} were refused"
-    if outside:
-        refused += f", {outside:,} of these because they are outside the domain"
     checked = trusted(found) + found.get(WARNED, 0)
     return prose(
-        f"{ended(found):,} random runs, numbered from {first} on, ended as follows. "
-        f"{trusted(found):,} were trusted, and {wrong_of(found)}{at_most(found)}. "
-        f"{found.get(WARNED, 0):,} were doubted, although {needless:,} of these were right. "
-        f"{refused}. "
-        f"Of the {checked:,} runs that were not refused, {alone(found):,} had one independent "
-        f"check and {found.get(NOBODY, 0)} had none; the rest had two. "
+        f"The runs are numbered from {first} on. "
         f"The error of {above} trusted runs was larger than their own estimate, and that of "
         f"{twice or 'none'} more than twice as large. "
+        f"Of the {checked:,} runs that were not refused, {alone(found):,} had one of the two "
+        f"checks, and {found.get(NOBODY, 0)} had none because neither theory could compute them. "
         f"Of {ended(known):,} runs of known cases {trusted(known):,} were trusted, and "
         f"{wrong_of(known)}."
     )
