@@ -69,6 +69,8 @@ MAPS = stability_maps.load().maps
 ENGINES = Results.load()
 EXPONENT = re.compile(r"\d(\.\d+)?e[-+]\d+")
 MARKED = re.compile(r"(<!-- made: (?P<name>[\w-]+) -->\n).*?(<!-- end -->)", re.DOTALL)
+ACCURATE = 1e-6
+"""The error [rad] at which tables compare run times scene by scene."""
 LEFT_OUT = ("sliding-metal",)  # it takes as long as the massless can, within 5 %
 PEERS = {"mujoco": "MuJoCo", "scipy": "SciPy", "numba": "numba", "heyoka": "heyoka"}
 """Packages whose versions the benchmark's page has, with their names as their makers write them."""
@@ -221,12 +223,20 @@ def without_columns(shown: Table, left_out: Sequence[str]) -> Table:
     )
 
 
+def of_one_error(shown: Table) -> Table:
+    """Return a table of one error with the error in its head, and not in each row."""
+    (error,) = {row[0].partition(", ")[2] for row in shown.rows}
+    columns = (f"to {error.replace('e-0', 'e-')}", *shown.columns[1:])
+    rows = [(row[0].partition(", ")[0], *row[1:]) for row in shown.rows]
+    return Table(shown.title, columns, rows, shown.left)
+
+
 def others() -> str:
     """Run times of other tools at equal error, and how much they scatter.
 
     Interpreted and compiled equations take odeint about as long, so that one column has both.
     """
-    ratios = benchmark_tables.ratios(BENCHMARK, benchmark_tables.COMPARED)
+    ratios = of_one_error(benchmark_tables.ratios(BENCHMARK, (ACCURATE,)))
     shown = without_columns(some(ratios), [COMPILED_ODEINT])
     # A ratio is followed by its range in brackets.
     rows = [(row[0], row[1], *(cell.partition(" (")[0] for cell in row[2:])) for row in shown.rows]
@@ -240,10 +250,9 @@ def scatter() -> str:
     relative = []
     for case in BENCHMARK.cases:
         for name in benchmark_tables.OTHERS:
-            for error in benchmark_tables.COMPARED:
-                found = benchmark_tables.time_ratio(BENCHMARK, case, name, error)
-                if found is not None:
-                    relative += [found.smallest / found.of_least, found.largest / found.of_least]
+            found = benchmark_tables.time_ratio(BENCHMARK, case, name, ACCURATE)
+            if found is not None:
+                relative += [found.smallest / found.of_least, found.largest / found.of_least]
     return prose(
         f"The ratios are of the least times of five rounds. In single rounds they were "
         f"{min(relative):.2g} to {max(relative):.2g} times as large."
@@ -252,7 +261,8 @@ def scatter() -> str:
 
 def whole_calls() -> str:
     """Times of whole calls."""
-    shown = some(benchmark_tables.whole_calls(BENCHMARK), (*LEFT_OUT, "1e-03"))
+    calls = some(benchmark_tables.whole_calls(BENCHMARK), (*LEFT_OUT, "1e-03"))
+    shown = of_one_error(calls)
     return plain(in_milliseconds(readable(shown), 1, len(shown.columns)))
 
 
