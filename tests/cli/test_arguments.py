@@ -71,6 +71,19 @@ def test_a_scene_is_that_of_python(name: str) -> None:
     assert scene(parse(["simulate", name, *words])) == SCENES[name](**arguments)
 
 
+@pytest.mark.parametrize("name", ["sliding", "frozen", "liquid", "standing"])
+def test_a_can_of_one_s_own_has_the_shape_of_metal_sheet(name: str) -> None:
+    words = f"simulate {name} --can-mass 0.013 --can-radius 0.0331 --length 0.115".split()
+    if name == "standing":
+        words[0] = "export"
+
+    can = scene(parse(words)).can
+
+    sheet = Can.sheet_metal(0.0331, 0.115)
+    assert (can.radius, can.length, can.mass) == (0.0331, 0.115, 0.013)
+    assert can.inertia / can.mass == pytest.approx(sheet.inertia / sheet.mass, rel=1e-12)
+
+
 def test_the_options_of_the_run_arrive() -> None:
     words = (
         "simulate frozen --phi0 -30 --phi-dot0 180 --duration 0.5 --rolling contact "

@@ -78,7 +78,8 @@ class Section:
         values, slopes = _harmonic(points, weights, corner)
         potential = values.imag
         flux = slopes.real * normal.imag + slopes.imag * normal.real
-        stiffness = (potential * weights) @ flux.T
+        # By einsum: OpenBLAS 0.3.34 may crash in long products (its issue 6021).
+        stiffness = np.einsum("ip,jp", potential * weights, flux)
         sloping = (potential * weights)[:, on_wall:]
         self.corner = corner
         self.boundary = points
@@ -86,7 +87,7 @@ class Section:
         self.on_wall = on_wall
         # Coordinates in which the stiffness is 1.
         factor = linalg.cholesky((stiffness + stiffness.T) / 2, lower=True)
-        surfaces = sloping @ potential[:, on_wall:].T
+        surfaces = np.einsum("ip,jp", sloping, potential[:, on_wall:])
         half_way = linalg.solve_triangular(factor, surfaces, lower=True)
         self.factor = factor
         self.surface = linalg.solve_triangular(factor, half_way.T, lower=True)

@@ -43,7 +43,8 @@ _MEANINGS = {
     "or of the length of a can that stands",
     "can": "massless (section 2 of the paper), "
     "or metal, of aluminium sheet 0.1 mm thick (section 3)",
-    "can_mass": "mass of a can of metal sheet [kg], if it is not that of --can",
+    "can_mass": "mass of the can [kg] if it is not that of --can; "
+    "it is then spread as in metal sheet",
     "radius": "radius of the can [m]",
     "length": "length of the can [m]",
     "liquid": "the liquid, at 20 degrees Celsius",
@@ -304,10 +305,7 @@ def scene_options(name: str, command: str) -> list[Option]:
     choices = {"can": tuple(_CANS), "liquid": NAMES}
     reads = {"incline": degrees, "modes": int}
     defaults = _defaults(name)
-    synonyms = {}
-    if command == "fit" and "can" in defaults:
-        defaults["can_mass"] = None
-        synonyms["radius"] = ("--can-radius",)
+    synonyms = {"radius": ("--can-radius",)}
     options = [
         Option(
             "--" + argument.replace("_", "-"),
@@ -338,6 +336,7 @@ def _defaults(name: str) -> dict[str, Any]:
     defaults = {parameter.name: parameter.default for parameter in parameters}
     if "can" in defaults:
         defaults["can"] = "metal" if name == "standing" else "massless"
+        defaults["can_mass"] = None
         defaults["radius"] = RADIUS
         defaults["length"] = LENGTH
     if name == "liquid":
@@ -391,14 +390,14 @@ def make(function: Callable[..., Any], **options: Any) -> Any:
     """Return the scene that a function makes from options of the command line."""
     if "can" in options:
         can = _CANS[options["can"]](options.pop("radius"), options.pop("length"))
-        options["can"] = _with_mass(can, options.pop("can_mass", None))
+        options["can"] = _with_mass(can, options.pop("can_mass"))
     if function in (liquid, liquid_in):
         options["name"] = options.pop("liquid")
     return function(**options)
 
 
 def _with_mass(can: Can, mass: float | None) -> Can:
-    """Return a can of metal sheet with a mass [kg], or the can itself if that is None."""
+    """Return the can with a mass [kg] that is spread as in metal sheet, or as it is if None."""
     if mass is None:
         return can
     sheet = Can.sheet_metal(can.radius, can.length)

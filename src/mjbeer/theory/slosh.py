@@ -367,9 +367,8 @@ def _held(fill: float) -> HeldModes:
     kappa, transforms = _transforms()
     weights = STEP / math.pi * np.tanh(kappa * shape.half_angle) / kappa
     # Polynomials of x/c that are orthonormal by x/c are so by x once divided by sqrt(c).
-    weights /= half_chord
-    flux = (transforms * weights) @ transforms.T
-    inverse_lengths, vectors = np.linalg.eigh(flux)
+    weighted = transforms * np.sqrt(weights / half_chord)
+    inverse_lengths, vectors = np.linalg.eigh(weighted @ weighted.T)
     # The signs are free, and here such that no mode has a negative component of e_0.
     vectors = np.where(vectors[0] < 0, -vectors, vectors)
     return HeldModes(
