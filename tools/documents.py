@@ -46,6 +46,7 @@ from mjbeer.studies.validation.validate import checks
 from mjbeer.theory import slosh
 from mjbeer.theory.can import Can
 from mjbeer.theory.liquid import centrifugal_ratio, liquid_in
+from mjbeer.theory.liquid_damping import COATING_SHARE
 from mjbeer.theory.liquid_properties import LIQUIDS, NAMES
 from mjbeer.theory.paper_scenes import frozen, sliding
 from mjbeer.theory.scene import Scene
@@ -203,7 +204,8 @@ def misprints() -> str:
         if wrong:
             about = wrong.about + notes[wrong.kind]
             lines.append((row.equation, about, f"{wrong.expected_error:.2g}"))
-    return table(("equation", "what is wrong in it", "its error"), lines, left=(0, 1))
+    columns = ("equation", "what is wrong in it", "relative error as printed")
+    return table(columns, lines, left=(0, 1))
 
 
 def some(shown: Table, left_out: Sequence[str] = LEFT_OUT) -> Table:
@@ -469,13 +471,13 @@ def swings() -> str:
     A frequency is in brackets where another mode than the slowest has more of the energy.
     """
     columns = (
-        "fill",
+        "fill (depth / diameter)",
         "massless: solid [Hz]",
         "massless: liquid [Hz]",
         "12-oz can: solid [Hz]",
         "12-oz can: liquid [Hz]",
-        "energy in this mode",
-        "amplitude halved after",
+        "its share of the energy (12-oz can)",
+        "amplitude halved after (12-oz can)",
     )
     lines = []
     for fill in (0.1, 0.25, 0.5, 0.75, 0.9):
@@ -509,7 +511,7 @@ def speeds() -> str:
         "at 10° [m/s]",
         "Reynolds number",
         "centrifugal [g]",
-        "film could hold",
+        "film could hold, of the liquid",
     )
     lines = []
     for name in NAMES:
@@ -541,7 +543,7 @@ def terminal_speed(name: str, incline: float) -> str:
     scene = without_doubts(name, incline)
     speed = scene.terminal_speed()
     is_below = centrifugal_ratio(scene, speed) < 1
-    is_one_lump = liquid_in(name, incline).carried < 1 / 3
+    is_one_lump = liquid_in(name, incline).carried < COATING_SHARE
     return f"{speed:.2g}" if is_below and is_one_lump else f"({speed:.2g})"
 
 
@@ -549,16 +551,14 @@ def metre() -> str:
     """Mean accelerations over the first metre, divided by g sin(alpha), with their spread."""
     columns = (
         "water [mL]",
-        "depth [mm]",
         "no friction",
         "friction",
-        "friction doubled to halved",
+        "(doubled to halved)",
         "model holds for",
     )
     lines = []
-    for volume in (1.0, 6.0, 10.0, 50.0, 177.0, 350.0):
+    for volume in (1.0, 10.0, 20.0, 50.0, 177.0, 350.0):
         free = real_beer.water_in(volume, GENTLE, friction=0.0)
-        depth = 2e3 * (free.load.fill or 0) * free.can.radius
         none = free.acceleration() / (free.gravity * math.sin(GENTLE))
         usual = with_water(volume)
         halved = with_water(volume, friction=1 / real_beer.SPREAD)
@@ -566,12 +566,11 @@ def metre() -> str:
         until = real_beer.lump_until(usual)
         cells = (
             f"{volume:g}",
-            f"{depth:.2g}",
             f"{none:.2f}",
             f"{real_beer.over_first_metre(usual):.2f}",
-            f"{real_beer.over_first_metre(doubled):.2f} to "
-            f"{real_beer.over_first_metre(halved):.2f}",
-            "the whole metre" if until > 1 else f"{until:.1f} m",
+            f"({real_beer.over_first_metre(doubled):.2f} to "
+            f"{real_beer.over_first_metre(halved):.2f})",
+            "the whole metre" if until > 1 else f"{until:.2f} m",
         )
         lines.append(cells)
     return table(columns, lines)
@@ -594,19 +593,25 @@ def measured_by_others() -> str:
     cream_in_tin = frozen(USUAL, 1.0, tin).acceleration()
     broth_in_tin = sliding(USUAL, 1.0, tin).acceleration()
 
-    cylinder = f"**a cylinder of {empty:g} kg, {_CYLINDER[0]:.3f} s, and of {heaviest:g} kg, "
-    soups = f"**broth, {_SOUPS[0]:.2f} s, and cream of mushroom, {_SOUPS[1]:.2f} s**"
+    cylinder = quotient(*_CYLINDER)
+    soups = quotient(*_SOUPS)
     lines = [
-        (f"{cylinder}{_CYLINDER[1]:.3f} s**", f"**{quotient(*_CYLINDER)}**"),
-        ("a thin shell, and a solid cylinder without a wall", time_ratio(shell, solid)),
-        ("a thin wall of 0.073 kg, and what is inside turns with it", time_ratio(shell, turning)),
-        ("the same, and what is inside does not turn", time_ratio(shell, not_turning)),
-        (soups, f"**{quotient(*_SOUPS)}**"),
-        ("the broth does not turn, the cream does; cans without mass", time_ratio(down, solid)),
-        ("the same; cans of a tenth of the mass", time_ratio(broth_in_tin, cream_in_tin)),
-        ("both turn with their cans", time_ratio(solid, solid)),
+        (
+            "cylinder, empty and filled: a thin shell, and a solid without a wall",
+            f"{_CYLINDER[0]:.3f} s / {_CYLINDER[1]:.3f} s = {cylinder}",
+            time_ratio(shell, solid),
+        ),
+        ("a thin wall of 0.073 kg, and what is inside turns", cylinder, time_ratio(shell, turning)),
+        ("the same, and what is inside does not turn", cylinder, time_ratio(shell, not_turning)),
+        (
+            "broth and cream: the broth does not turn, the cream does; cans without mass",
+            f"{_SOUPS[0]:.2f} s / {_SOUPS[1]:.2f} s = {soups}",
+            time_ratio(down, solid),
+        ),
+        ("the same; cans of a tenth of the mass", soups, time_ratio(broth_in_tin, cream_in_tin)),
+        ("both turn with their cans", soups, time_ratio(solid, solid)),
     ]
-    return table(("**measured**, and by theory", "ratio of the times"), lines)
+    return table(("what theory assumes", "measured ratio of times", "by theory"), lines)
 
 
 def quotient(first: float, second: float) -> str:
