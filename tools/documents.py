@@ -454,12 +454,16 @@ def honesty() -> str:
     above = found.get(stability_study.ABOVE, 0)
     twice = found.get(stability_study.TWICE, 0)
     checked = trusted(found) + found.get(WARNED, 0)
+    unchecked = found.get(NOBODY, 0)
+    without = (
+        f", and {unchecked} had none because neither theory could compute them" if unchecked else ""
+    )
     return prose(
         f"The runs are numbered from {first} on. "
-        f"The error of {above} trusted runs was larger than their own estimate, and that of "
-        f"{twice or 'none'} more than twice as large. "
-        f"Of the {checked:,} runs that were not refused, {alone(found):,} had one of the two "
-        f"checks, and {found.get(NOBODY, 0)} had none because neither theory could compute them. "
+        f"The error of {above} trusted runs was larger than their own estimate, in "
+        f"{twice or 'none'} of them more than twice as large. "
+        f"Of the {checked:,} runs that were not refused, {alone(found):,} had only one of the two "
+        f"checks{without}. "
         f"Of {ended(known):,} runs of known cases {trusted(known):,} were trusted, and "
         f"{wrong_of(known)}."
     )
