@@ -107,7 +107,7 @@ def test_the_contact_that_rk4_wins_is_excepted(stored: Benchmark) -> None:
     work_precision.draw_contact(stored, alone)
 
     assert whole.title.startswith("Without contacts ")
-    assert f"DOP853 takes {factor:.2g} times as long as RK4" in whole.subtitle
+    assert f"DOP853 takes {factor:.1f} times as long as RK4" in whole.subtitle
     for picture in (whole, alone):
-        assert f">{factor:.2g} times as long<" in picture.svg
+        assert f">{factor:.1f} times as long<" in picture.svg
         assert ">as RK4<" in picture.svg

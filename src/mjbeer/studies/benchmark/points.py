@@ -179,6 +179,14 @@ def spread(times: Sequence[float]) -> str:
     return f"{least} ms" if least == largest else f"{least} to {largest} ms"
 
 
+def two_digits(value: float) -> str:
+    """Return a positive number with two digits, such as 3.0."""
+    rounded = float(f"{value:.2g}")
+    if rounded >= 10:
+        return f"{rounded:.0f}"
+    return f"{rounded:#.2g}"
+
+
 @dataclass
 class Benchmark:
     """A study of error against run time; its points are in the order of their measurement."""

@@ -22,6 +22,7 @@ from mjbeer.studies.benchmark.points import (
     Ratio,
     time_for,
     time_ratio,
+    two_digits,
 )
 
 _DARK = "#333333"
@@ -148,7 +149,7 @@ def _title(study: Benchmark) -> str:
     ratios = [ratio for case in study.cases if (ratio := _ratio(study.of(case))) is not None]
     if not ratios:
         return "What accuracy costs: error over run time"
-    factors = f"{min(ratios):.2g} to {max(ratios):.2g}"
+    factors = f"{two_digits(min(ratios))} to {two_digits(max(ratios))}"
     return f"Without contacts RK4 takes {factors} times as long as mjbeer's best"
 
 
@@ -157,7 +158,7 @@ def _subtitle(study: Benchmark) -> str:
     ratio = contact_ratio(study)
     if ratio is None:
         return _SUBTITLE
-    factor = f"{ratio.of_least:.2g}"
+    factor = two_digits(ratio.of_least)
     return f"With a contact (last panel) DOP853 takes {factor} times as long as RK4. {_SUBTITLE}"
 
 
@@ -187,7 +188,7 @@ def _draw_arrow(axes: Axes, fast: Sequence[Point], slow: Sequence[Point], fast_n
     end = 1e3 * time_for(slow, _COMPARED)
     arrow = {"arrowstyle": "<->", "color": _DARK, "linewidth": 1.0, "shrinkA": 0, "shrinkB": 0}
     axes.annotate("", (end, _COMPARED), (start, _COMPARED), arrowprops=arrow)
-    words = f"{ratio.of_least:.2g} times as long\nas {fast_name}"
+    words = f"{two_digits(ratio.of_least)} times as long\nas {fast_name}"
     note(axes, words, (end, _COMPARED), (8, 12), color=_DARK)
 
 
