@@ -12,11 +12,13 @@ from common import Case, Motion, Setting, State, answer, sampled
 HARDEST = 0.9999
 """The largest impedance that MuJoCo allows."""
 TIMECONST = 2.0
-"""The least time constant of a contact that MuJoCo allows, in timesteps."""
+"""The least time constant of a contact in timesteps, unless the flag refsafe is off."""
 CONTACT = (
-    "solref of two timesteps, solimp of 0.9999, an elliptic cone, and impratio 100: the stiffest "
-    "contact that the documentation allows"
+    "solref of two timesteps, the least that the flag refsafe allows, which is on by default; "
+    "solimp of 0.9999, the largest impedance; an elliptic cone; and impratio 100"
 )
+DEPTH = 1e-9
+"""How deep the can starts, in radii: by rounding, one end does not touch at a depth of zero."""
 STIFF = {"stiff": True, "cone": "elliptic", "impratio": 100}
 SETTINGS = [
     Setting("cylinder", "default"),
@@ -70,7 +72,8 @@ def roll(case: Case, timestep: float, setting: Setting) -> Motion:
     model = mujoco.MjModel.from_xml_string(text)
     data = mujoco.MjData(model)
     half = case.phi0 / 2
-    data.qpos[:] = [case.u0, 0, case.radius, math.cos(half), 0, math.sin(half), 0]
+    height = case.radius * (1 - DEPTH)
+    data.qpos[:] = [case.u0, 0, height, math.cos(half), 0, math.sin(half), 0]
     data.qvel[:] = [case.u_dot0, 0, 0, 0, case.phi_dot0, 0]
 
     def read() -> State:

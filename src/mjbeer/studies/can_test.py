@@ -20,6 +20,9 @@ DURATION = 2.0
 """Length of the motions [s]."""
 EVERY = 1e-3
 """Time between two samples [s]."""
+DEPTH = 1e-9
+"""How deep a body starts in the incline, in radii: by rounding, one end of a can does not touch at
+a depth of zero."""
 _MASS = 0.2
 """Mass of the can with its load [kg]."""
 
@@ -145,7 +148,8 @@ def start(case: Case, model: mujoco.MjModel) -> mujoco.MjData:
     radius = case.scene.can.radius
     half = case.phi0 / 2
     data = mujoco.MjData(model)
-    data.qpos[:] = [radius * case.phi0, 0, radius, math.cos(half), 0, math.sin(half), 0]
+    height = radius * (1 - DEPTH)
+    data.qpos[:] = [radius * case.phi0, 0, height, math.cos(half), 0, math.sin(half), 0]
     data.qvel[:] = [radius * case.phi_dot0, 0, 0, 0, case.phi_dot0, 0]
     return data
 

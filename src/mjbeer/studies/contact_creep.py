@@ -1,7 +1,7 @@
 """What MuJoCo's contact needs for a wheel: from the default to a stiff contact, step by step.
 
 `python -m mjbeer.studies.contact_creep` runs the can test with each of `SETTINGS` and writes two
-tables into `STORED`, in a quarter of a minute: the errors and the cost of each setting, and what
+tables into `STORED`, in half a minute: the errors and the cost of each setting, and what
 `mjbeer.theory.soft_contact` predicts of the soft ones.
 """
 
@@ -31,7 +31,7 @@ TIMESTEPS = (1e-3, 1e-4)
 """Timesteps of the table [s]."""
 HARDEST = 0.9999
 """The largest impedance that MuJoCo accepts, mjMAXIMP."""
-ROUNDS = 20
+ROUNDS = 60
 """Rounds in which the steps of all settings are timed in turn; the shortest time counts."""
 STEPS_A_ROUND = 500
 PLANAR = 2 / 3
@@ -90,7 +90,7 @@ DEFAULT = Setting("MuJoCo's default")
 ELLIPTIC = Setting("`cone` elliptic", cone="elliptic")
 HARD_PYRAMID = Setting("`impratio` 100", impratio=100)
 GRIP = Setting("`cone` and `impratio`", "elliptic", 100)
-"""What the manual advises against slow slip."""
+"""What the manual recommends against slow slip."""
 RECIPE = Setting("`solref` and `solimp`", stiff_solref=True, stiff_solimp=True)
 STIFF = replace(RECIPE, name="all four", cone="elliptic", impratio=100)
 WHEEL = replace(RECIPE, name="these two on the wheel alone", wheel="")
@@ -122,7 +122,7 @@ class Row(NamedTuple):
     """At each of `TIMESTEPS`."""
     roll: list[Errors]
     cost: float
-    """Run time of a step, divided by that of the default."""
+    """Processor time of a step, divided by that of the default."""
 
 
 def measure(settings: Sequence[Setting] = SETTINGS) -> list[Row]:
@@ -144,7 +144,7 @@ def _errors(setting: Setting, case: Case, timestep: float) -> Errors:
 
 
 def _costs(settings: Sequence[Setting]) -> list[float]:
-    """Return the run times of a step at the first timestep, divided by the first setting's.
+    """Return the processor times of a step at the first timestep, divided by the first setting's.
 
     Rounds take turns, so that what else the machine does meets all settings alike.
     """
@@ -153,9 +153,9 @@ def _costs(settings: Sequence[Setting]) -> list[float]:
     for _ in range(ROUNDS):
         for place, model in enumerate(models):
             data = can_test.start(can_test.ROLL, model)
-            began = time.perf_counter()
+            began = time.process_time()
             mujoco.mj_step(model, data, STEPS_A_ROUND)
-            shortest[place] = min(shortest[place], time.perf_counter() - began)
+            shortest[place] = min(shortest[place], time.process_time() - began)
     return [seconds / shortest[0] for seconds in shortest]
 
 

@@ -9,7 +9,13 @@ from typing import NamedTuple
 from matplotlib.axes import Axes
 
 from mjbeer.output.plots import COLOURS, GREY, Picture, chart
-from mjbeer.studies.engines.engine_tables import COARSE, order_cell
+from mjbeer.studies.engines.engine_tables import (
+    COARSE,
+    closest_defaults,
+    number,
+    order_cell,
+    worst_error,
+)
 from mjbeer.studies.engines.results import CASES, EQUATION, CurveKey, Results, Row, order_of
 
 
@@ -24,7 +30,7 @@ _COLOURS = (*COLOURS, "#882255", "#808000", "#44AA99", GREY)
 _STYLES = [_Style(colour, marker) for colour, marker in zip(_COLOURS, "osD^vPX*<h>", strict=True)]
 _CEILING = 100.0
 """Points with larger errors [rad] are not drawn."""
-_FLOOR = 1e-7
+_FLOOR = 1e-8
 """Nor are those with smaller ones: no contact has them."""
 _FASTEST = 0.7
 _SLOWEST = 4e4
@@ -43,7 +49,7 @@ _SUBTITLE = (
     "closest curve at 1 ms is named; its other shapes and settings are pale. Full markers: the "
     "error falls with the timestep h as the name says. Open markers: it has a floor [rad], or no "
     "power. SciPy is no engine; it has tolerances in place of timesteps, as Drake's error control "
-    "has. Errors below 1e-7 rad are left out."
+    "has. Errors below 1e-8 rad are left out."
 )
 
 
@@ -102,14 +108,11 @@ def _error_at_coarse(rows: Sequence[Row]) -> float:
 
 def _title(results: Results) -> str:
     """Return how far engines are off at their defaults: the larger error of all cases, at 1 ms."""
-    largest: dict[tuple[str, ...], float] = {}
-    for row in results.rows:
-        if row.engine != EQUATION and not row.tuned and row.timestep == COARSE:
-            way = row.key[1:]
-            largest[way] = max(row.error, largest.get(way, 0.0))
-    least = min(largest.values())
-    most = max(largest.values())
-    return f"At their defaults and 1 ms, engines are {least:.1g} to {most:.2g} rad off in 2 s"
+    errors = [worst_error(results, way) for way in closest_defaults(results).values()]
+    return (
+        f"At their defaults and 1 ms, engines are {number(min(errors))} to {number(max(errors))} "
+        "rad off in 2 s, each with its closest shape"
+    )
 
 
 def _engines(results: Results) -> list[str]:

@@ -5,7 +5,16 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from mjbeer.output.terminal import Table
-from mjbeer.studies.engines.results import CASES, CurveKey, Engine, Order, Results, Row, order_of
+from mjbeer.studies.engines.results import (
+    CASES,
+    EQUATION,
+    CurveKey,
+    Engine,
+    Order,
+    Results,
+    Row,
+    order_of,
+)
 
 COARSE = 1e-3
 """The timestep [s] that tables compare, and of their run times."""
@@ -57,12 +66,27 @@ def closest(results: Results) -> dict[str, Way]:
 
     Settings that choose their own steps are left out.
     """
+    with_timestep = [
+        way for way in ways(results) if all(row.has_timestep for row in coarse_rows(results, way))
+    ]
+    return _least(results, with_timestep)
+
+
+def closest_defaults(results: Results) -> dict[str, Way]:
+    """Return, for each engine, the shape whose `worst_error` at the defaults is the least."""
+    at_defaults = [
+        way for way in ways(results) if not any(row.tuned for row in coarse_rows(results, way))
+    ]
+    return _least(results, [way for way in at_defaults if way.engine != EQUATION])
+
+
+def _least(results: Results, candidates: Sequence[Way]) -> dict[str, Way]:
+    """Return the candidate of each engine whose `worst_error` is the least."""
     found: dict[str, Way] = {}
-    for way in ways(results):
-        if all(row.has_timestep for row in coarse_rows(results, way)):
-            other = found.setdefault(way.engine, way)
-            if worst_error(results, way) < worst_error(results, other):
-                found[way.engine] = way
+    for way in candidates:
+        best = found.setdefault(way.engine, way)
+        if worst_error(results, way) < worst_error(results, best):
+            found[way.engine] = way
     return found
 
 
