@@ -84,7 +84,9 @@ def test_the_race_of_liquids_ends_as_its_caption_says() -> None:
     place = honey.positions(np.array([finish["ice"]]))[0, 0]
     speed = honey.trajectory.scene.terminal_speed()
     carried = liquid_in("honey", **films.WITH_LIQUID).carried
-    numbers = [f"{time:.2f} s" for time in finish.values()]
+    numbers = [cans[name].shown(time) for name, time in finish.items()]
+    numbers = [number.replace("≈", "about") for number in numbers]
+    numbers += [cans[name].note.split()[2] for name in ("water", "olive oil")]
     numbers += [f"{100 * place:.0f} cm", f"{100 * speed:.1f} cm/s", f"{100 * carried:.0f} %"]
     for number in numbers:
         assert f" {number}" in FILMS["liquids"].caption

@@ -42,7 +42,7 @@ ROCKING = partial(simulate, frozen(), 2.0, 0.0, integrator="DOP853")
 LIFT_OFF = partial(
     simulate, frozen(), 1.0, math.pi, rolling="contact", timestep=2e-4, friction=FRICTION
 )
-PARTING = partial(LIFT_OFF, times=np.linspace(0.68, 1.0, 1601))
+PARTING = partial(LIFT_OFF, times=np.arange(2250, 4901) * 2e-4)
 _PRINTED: dict[str, Any] = {"color": COLOURS[1], "linestyle": "--"}
 """The style of an equation that the paper prints wrong."""
 _JUMP = 3.0
@@ -270,7 +270,7 @@ def draw_slip_and_hop(panels: Sequence[Axes]) -> None:
     times = np.linspace(0, 1, 1001)
     rolling = exact(contact.scene, times, math.pi)
     leaves_at = rolling.rolls_until()
-    friction, moved = panels
+    friction, slipped, moved = panels
     needed = rolling.forces.needed_friction
     too_little = times[np.argmax(needed > FRICTION)]
     slid = 1e3 * contact.slip
@@ -281,6 +281,8 @@ def draw_slip_and_hop(panels: Sequence[Axes]) -> None:
     friction.axhline(FRICTION, **REFERENCE)
     note(friction, f"all that there is: μ = {FRICTION:g}", (0.5, FRICTION), (6, 8))
     note(friction, "needed to roll,\nexact theory", (0.5, 0.3), (6, 16), color="black")
+    slipped.plot(contact.time[before], slid[before], color=COLOURS[1])
+    note(slipped, "slid instead of rolled", (0.74, 0.0), (-8, 10), color=COLOURS[1], ha="right")
     moved.plot(contact.time, slid, color=COLOURS[1])
     moved.plot(contact.time, lifted, color=COLOURS[0])
     note(moved, "slid instead\nof rolled", (0.94, 15), (-2, 0), color=COLOURS[1], ha="right")
@@ -294,10 +296,15 @@ def draw_slip_and_hop(panels: Sequence[Axes]) -> None:
         title=f"Rolling needs more friction than there is from {too_little:.2f} s",
         ylim=(0, 2.2),
     )
+    most = np.abs(slid[before]).max()
+    slipped.set(
+        ylabel="slid [mm]",
+        title=f"MuJoCo's can first slides by {most:.1f} mm",
+        ylim=(-1.5 * most, 1.5 * most),
+    )
     moved.set(
         ylabel="distance [mm]",
-        title=f"MuJoCo's can slides by {np.abs(slid[before]).max():.1f} mm, then hops "
-        f"{lifted.max():.1f} mm high",
+        title=f"Then it slides further, and hops {lifted.max():.1f} mm high",
     )
     share_time(panels)
 
