@@ -380,6 +380,7 @@ slide("a-fill-slider", 60);
 change("a-inside", "water");
 roll();
 """
+FINISH = "compute(); guesses[4].click(); go(); goTo(1)"
 SPACE = """
 const space = new KeyboardEvent("keydown", {key: " ", bubbles: true, cancelable: true});
 document.querySelector("summary").dispatchEvent(space);
@@ -421,19 +422,87 @@ def test_a_browser_races_and_says_who_won(tmp_path: pathlib.Path) -> None:
 
 
 @pytest.mark.slow
+def test_the_link_of_the_lecture_is_its_race(tmp_path: pathlib.Path) -> None:
+    """It names φ at the start alone, which then is how the cans start."""
+    link = re.search(r"second of the\s+race\]\(live\.html(#[^)]*)\)", LECTURE)
+    slides = re.search(r"beer slides, ¾ full \| ([\d.]+) s", LECTURE)
+    frozen_to_it = re.search(r"beer frozen, ¾ full \| ([\d.]+) s", LECTURE)
+    assert link
+    assert slides
+    assert frozen_to_it
+    verdict = element(shown(tmp_path, FINISH, link[1]), "verdict")
+    first, second = re.findall(r"([\d.]+) s", verdict)
+    assert f"{float(first):.2f}" == slides[1]
+    assert f"{float(second):.2f}" == frozen_to_it[1]
+
+
+@pytest.mark.slow
+def test_a_row_of_results_comes_when_its_can_arrives(tmp_path: pathlib.Path) -> None:
+    """Once each, whatever is shown again."""
+    code = FINISH.replace("goTo(1)", "goTo(0.9); goTo(0.7); const early = results.length; goTo(1)")
+    title = "document.title = [early, results.map((row) => row.can).join('')]"
+    page = shown(tmp_path, f"{code}; goTo(0.5); goTo(1); {title}")
+    assert "<title>3,ABCD</title>" in page
+
+
+@pytest.mark.slow
+def test_the_slowest_can_does_not_squeeze_the_curves_of_the_others(tmp_path: pathlib.Path) -> None:
+    link = "#" + urllib.parse.urlencode(story("Honey and ice"))
+    times = "lanes.map(({run}) => run.arrives).sort((one, two) => one - two)"
+    page = shown(tmp_path, f"{FINISH}; document.title = [...{times}, latestShown]", link)
+    title = page.split("<title>")[1].partition("</title>")[0]
+    *others, slowest, shown_until = (float(number) for number in title.split(","))
+    assert max(others) < shown_until < 1.5 * max(others) < slowest / 5
+    assert "as D is so slow" in element(page, "cut")
+
+
+@pytest.mark.slow
+def test_it_draws_in_a_window_of_no_width(tmp_path: pathlib.Path) -> None:
+    code = f"""{FINISH};
+      Object.defineProperty($("scene"), "clientWidth", {{value: 0}});
+      draw();
+      document.title = "drawn";"""
+    assert "<title>drawn</title>" in shown(tmp_path, code)
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize(
-    ("link", "sentence"),
+    ("link", "sentence", "kept"),
     [
-        ("#incline=99", "incline must be a number from 0 to 30, and not “99”: it is now 5."),
-        ("#incline=5&a-inside=tea", "a-inside must be one of no can, no friction, ice, "),
-        ("#incline=5&colour=red", "“colour” is no setting."),
-        ("#incline=5&a-start=tilted&a-mass=13&a-radius=40", ""),
+        (
+            "#incline=99",
+            "incline must be a number from 0 to 30, and not “99”: it is now 5.",
+            "#incline=5",
+        ),
+        ("?incline=99", "incline must be a number from 0 to 30, and not “99”", "#incline=5"),
+        ("?incline=7", "", "#incline=7"),
+        (
+            "#incline=5&a-inside=tea",
+            "a-inside must be one of no can, no friction, ice, ",
+            "#incline=5",
+        ),
+        ("#incline=5&colour=red", "“colour” is no setting.", "#incline=5"),
+        (
+            "#incline=5&a-start=tilted&a-phi0=20",
+            "a-start must be phi beside a-phi0: it is now phi.",
+            "#incline=5&a-start=phi&a-phi0=20",
+        ),
+        (
+            "#incline=5&a-start=tilted&a-mass=13&a-radius=40",
+            "",
+            "#incline=5&a-start=tilted&a-mass=13&a-radius=40",
+        ),
     ],
 )
-def test_a_link_with_a_bad_value_says_so(link: str, sentence: str, tmp_path: pathlib.Path) -> None:
-    told = element(shown(tmp_path, "", link), "wrong")
+def test_a_link_with_a_bad_value_says_so(
+    link: str, sentence: str, kept: str, tmp_path: pathlib.Path
+) -> None:
+    """And the address keeps only what is allowed."""
+    page = shown(tmp_path, "document.title = location.search + location.hash", link)
+    told = element(page, "wrong")
     assert told.startswith(sentence)
     assert bool(told) == bool(sentence)
+    assert f"<title>{html.escape(kept)}</title>" in page
 
 
 @pytest.mark.slow

@@ -34,9 +34,7 @@ from mjbeer.studies.engines import engine_plot, engine_tables, findings
 from mjbeer.studies.engines.results import Results
 from mjbeer.studies.stability import stability_maps, stability_study
 from mjbeer.studies.stability.judge import (
-    JUDGES,
     NOBODY,
-    REFUSED,
     RIGHT,
     SERIES,
     THEORY,
@@ -48,6 +46,7 @@ from mjbeer.studies.validation.validate import checks
 from mjbeer.theory import slosh
 from mjbeer.theory.can import Can
 from mjbeer.theory.liquid import centrifugal_ratio, liquid_in
+from mjbeer.theory.liquid_damping import COATING_SHARE
 from mjbeer.theory.liquid_properties import LIQUIDS, NAMES
 from mjbeer.theory.paper_scenes import frozen, sliding
 from mjbeer.theory.scene import Scene
@@ -69,7 +68,10 @@ COUNTS = json.loads((CHECKOUT / "docs" / "stability.json").read_text(encoding="u
 BENCHMARK = Benchmark.load(SHIPPED)
 MAPS = stability_maps.load().maps
 ENGINES = Results.load()
+EXPONENT = re.compile(r"\d(\.\d+)?e[-+]\d+")
 MARKED = re.compile(r"(<!-- made: (?P<name>[\w-]+) -->\n).*?(<!-- end -->)", re.DOTALL)
+ACCURATE = 1e-6
+"""The error [rad] at which tables compare run times scene by scene."""
 LEFT_OUT = ("sliding-metal",)  # it takes as long as the massless can, within 5 %
 PEERS = {"mujoco": "MuJoCo", "scipy": "SciPy", "numba": "numba", "heyoka": "heyoka"}
 """Packages whose versions the benchmark's page has, with their names as their makers write them."""
@@ -98,6 +100,38 @@ def table(
 def plain(shown: Table) -> str:
     """Return a table without its title as Markdown."""
     return table(shown.columns, shown.rows, shown.left)
+
+
+def readable(shown: Table) -> Table:
+    """Return a table whose numbers have no more exponent than they need: 1e-6 and 4.6."""
+
+    def shortened(found: re.Match[str]) -> str:
+        number = float(found[0])
+        if number >= 0.01:
+            return benchmark_tables.two_digits(number)
+        digits, _, power = found[0].partition("e")
+        return f"{digits}e{int(power)}"
+
+    rows = [tuple(EXPONENT.sub(shortened, cell) for cell in row) for row in shown.rows]
+    return Table(shown.title, shown.columns, rows, shown.left)
+
+
+def in_milliseconds(shown: Table, first: int, last: int) -> Table:
+    """Return a table with the unit of the times in the heads of their columns.
+
+    These columns are the `first` to the `last` one.
+    """
+
+    def without(row: Sequence[str]) -> tuple[str, ...]:
+        return tuple(
+            cell.replace(" ms", "") if first <= at <= last else cell for at, cell in enumerate(row)
+        )
+
+    columns = tuple(
+        f"{name} [ms]" if any(" ms" in row[at] for row in shown.rows) else name
+        for at, name in enumerate(shown.columns)
+    )
+    return Table(shown.title, columns, [without(row) for row in shown.rows], shown.left)
 
 
 def prose(text: str, indent: str = "") -> str:
@@ -130,24 +164,22 @@ def holds() -> str:
             ),
             (
                 "**run time**",
-                f"on the same model MuJoCo's RK4 takes {ratio(RK4, 1e-3)} times as long as "
-                f"mjbeer's best setting for an error of 1e-3 rad, and {ratio(RK4, 1e-6)} times for "
-                f"1e-6 rad; compiled equations without MuJoCo take {ratio(COMPILED_DOP853, 1e-6)} "
-                f"times as long with DOP853, and {ratio(HEYOKA, 1e-6)} times with heyoka, for "
-                "1e-6 rad ([error against run time](docs/benchmark.md))",
+                f"for an error of 1e-6 rad MuJoCo's RK4 needs {ratio(RK4, 1e-6)} times the time of "
+                "mjbeer's best setting on the same model; tools that integrate compiled equations "
+                f"without MuJoCo need {ratio(COMPILED_DOP853, 1e-6)} of it (DOP853) or "
+                f"{ratio(HEYOKA, 1e-6)} (heyoka) ([error against run time](docs/benchmark.md))",
             ),
             (
                 "**stability**",
                 f"the longest stable timestep of a swing is within {border_error():.2g} % of "
-                f"linear theory; {trusted(random):,} of {ended(random):,} new random runs were "
-                f"trusted, and {wrong_of(random)}{at_most(random)}; "
-                f"{random.get(stability_study.NEEDLESS, 0):,} others were doubted although they "
-                f"were right; {alone(random):,} had one independent check instead of two "
-                "([stability](docs/stability.md))",
+                f"linear theory; of {ended(random):,} new random runs, many of them deliberately "
+                f"extreme or impossible, {trusted(random):,} were trusted, and "
+                f"{wrong_of(random)}{at_most(random)} ([stability](docs/stability.md))",
             ),
             (
                 "**the paper**",
-                f"an audit of its 61 equations has {len(paper.claims())} rows; "
+                f"an audit of its 61 equations, footnotes and figures has {len(paper.claims())} "
+                "rows; "
                 f"{sum(wrong.values())} hold only after a correction: {wrong[MISPRINT]} misprints, "
                 f"{wrong[CONSEQUENCE]} consequences of one, and {wrong[APPROXIMATION]} "
                 "approximations that leave out too much ([the physics](docs/physics.md))",
@@ -159,8 +191,8 @@ def holds() -> str:
 
 def gauss_jackson() -> str:
     """How many times more evaluations DOP853 takes than Gauss-Jackson."""
-    columns = ("", *(f"to {error:g} rad" for error in gauss_jackson_figure.ERRORS))
-    return table(columns, gauss_jackson_figure.rows())
+    columns = ["", *(f"to 1e{math.log10(error):.0f} rad" for error in gauss_jackson_figure.ERRORS)]
+    return table(tuple(columns), gauss_jackson_figure.rows())
 
 
 def misprints() -> str:
@@ -172,7 +204,8 @@ def misprints() -> str:
         if wrong:
             about = wrong.about + notes[wrong.kind]
             lines.append((row.equation, about, f"{wrong.expected_error:.2g}"))
-    return table(("equation", "what is wrong in it", "its error"), lines, left=(0, 1))
+    columns = ("equation", "what is wrong in it", "relative error as printed")
+    return table(columns, lines, left=(0, 1))
 
 
 def some(shown: Table, left_out: Sequence[str] = LEFT_OUT) -> Table:
@@ -192,16 +225,26 @@ def without_columns(shown: Table, left_out: Sequence[str]) -> Table:
     )
 
 
+def of_one_error(shown: Table) -> Table:
+    """Return a table of one error with the error in its head, and not in each row."""
+    (error,) = {row[0].partition(", ")[2] for row in shown.rows}
+    columns = (f"to {error.replace('e-0', 'e-')}", *shown.columns[1:])
+    rows = [(row[0].partition(", ")[0], *row[1:]) for row in shown.rows]
+    return Table(shown.title, columns, rows, shown.left)
+
+
 def others() -> str:
     """Run times of other tools at equal error, and how much they scatter.
 
     Interpreted and compiled equations take odeint about as long, so that one column has both.
     """
-    ratios = benchmark_tables.ratios(BENCHMARK, benchmark_tables.COMPARED)
+    ratios = of_one_error(benchmark_tables.ratios(BENCHMARK, (ACCURATE,)))
     shown = without_columns(some(ratios), [COMPILED_ODEINT])
     # A ratio is followed by its range in brackets.
     rows = [(row[0], row[1], *(cell.partition(" (")[0] for cell in row[2:])) for row in shown.rows]
-    return f"{table(shown.columns, rows).rstrip()}\n\n{scatter()}"
+    without_ranges = Table(shown.title, shown.columns, rows, shown.left)
+    times_alone = in_milliseconds(readable(without_ranges), 1, 1)
+    return f"{plain(times_alone).rstrip()}\n\n{scatter()}"
 
 
 def scatter() -> str:
@@ -209,10 +252,9 @@ def scatter() -> str:
     relative = []
     for case in BENCHMARK.cases:
         for name in benchmark_tables.OTHERS:
-            for error in benchmark_tables.COMPARED:
-                found = benchmark_tables.time_ratio(BENCHMARK, case, name, error)
-                if found is not None:
-                    relative += [found.smallest / found.of_least, found.largest / found.of_least]
+            found = benchmark_tables.time_ratio(BENCHMARK, case, name, ACCURATE)
+            if found is not None:
+                relative += [found.smallest / found.of_least, found.largest / found.of_least]
     return prose(
         f"The ratios are of the least times of five rounds. In single rounds they were "
         f"{min(relative):.2g} to {max(relative):.2g} times as large."
@@ -221,20 +263,23 @@ def scatter() -> str:
 
 def whole_calls() -> str:
     """Times of whole calls."""
-    return plain(some(benchmark_tables.whole_calls(BENCHMARK), (*LEFT_OUT, "1e-03")))
+    calls = some(benchmark_tables.whole_calls(BENCHMARK), (*LEFT_OUT, "1e-03"))
+    shown = of_one_error(calls)
+    return plain(in_milliseconds(readable(shown), 1, len(shown.columns)))
 
 
 def long_run() -> str:
     """Errors and drifts of a motion of 1,000 s."""
     (case,) = BENCHMARK.long_cases
     left_out = ("RK4 4 ms", "DOP853 16 ms", "to 1e-06", "compiled equations to 1e-09")
-    return plain(some(benchmark_tables.drift(BENCHMARK, case), left_out))
+    return plain(readable(some(benchmark_tables.drift(BENCHMARK, case), left_out)))
 
 
 def contact() -> str:
-    """Errors of a contact, at every other timestep."""
-    shown = benchmark_tables.convergence(BENCHMARK, "frozen")
-    return table(shown.columns[:4], [row[:4] for row in shown.rows[1::2]])
+    """Errors of a contact at timesteps from 8 ms to 0.125 ms."""
+    shown = benchmark_tables.convergence(BENCHMARK, "frozen", 4)
+    rows = [row[:4] for row in shown.rows[1:9:2]]
+    return plain(readable(Table(shown.title, shown.columns[:4], rows, shown.left)))
 
 
 def measured() -> str:
@@ -250,19 +295,13 @@ def measured() -> str:
 
 
 def ranges() -> str:
-    """Sentences on RK4 and on the tools without MuJoCo."""
-    finest = benchmark_tables.FINEST
-    return prose(
-        f"On the same model MuJoCo's RK4 takes {ratio(RK4, 1e-3)} times as long as mjbeer's best "
-        f"setting for an error of 1e-3 rad, and {ratio(RK4, 1e-6)} times for 1e-6 rad. "
-        f"For 1e-11 rad it takes {ratio(RK4, finest)} times as long, because it has order 4 and "
-        "Gauss-Jackson order 13. "
-        f"Of the tools without MuJoCo, heyoka takes {ratio(HEYOKA, 1e-3)} times as long as "
-        f"mjbeer's best setting for 1e-3 rad, and {ratio(HEYOKA, 1e-6)} times for 1e-6 rad; "
-        f"DOP853 on compiled equations takes {ratio(COMPILED_DOP853, 1e-3)} and "
-        f"{ratio(COMPILED_DOP853, 1e-6)} times as long; "
-        f"SciPy's odeint takes {ratio(ODEINT, 1e-3)} and {ratio(ODEINT, 1e-6)} times as long."
-    )
+    """Run times of RK4 and of the tools without MuJoCo, over all scenes."""
+    errors = (*benchmark_tables.COMPARED, benchmark_tables.FINEST)
+    columns = ["run time divided by mjbeer's", *(f"to {error:.0e} rad" for error in errors)]
+    lines = []
+    for name in (RK4, ODEINT, COMPILED_DOP853, HEYOKA):
+        lines.append((name, *(ratio(name, error) for error in errors)))
+    return table(tuple(column.replace("e-0", "e-") for column in columns), lines)
 
 
 def stable_slip(integrator: str) -> float:
@@ -271,16 +310,19 @@ def stable_slip(integrator: str) -> float:
     Such a row has a damping and no stiffness. The limit is 1 under semi-implicit Euler, and half of
     the limit on the negative real axis under a Runge-Kutta method.
     """
-    if integrator == "discrete":
-        return math.inf
+    return math.inf if integrator == "discrete" else stable_decay(integrator) / 2
+
+
+def stable_decay(integrator: str) -> float:
+    """Return the largest h |s| with which exp(-|s| t) stays bounded, where it is explicit."""
     if integrator not in predictions.RUNGE_KUTTA:
-        return 1.0
+        return 2.0
     coefficients = predictions.polynomial(integrator)[::-1]
 
     def growth(rate: float) -> float:
         return abs(float(np.polyval(coefficients, -rate))) - 1
 
-    return predictions.first(growth, 0.1, 50.0) / 2
+    return predictions.first(growth, 0.1, 50.0)
 
 
 def steps() -> str:
@@ -310,6 +352,9 @@ def steps() -> str:
         longest = [limit(method) for method in methods]
         cells = ["no limit" if math.isinf(most) else f"{most:.2g}" for most in longest]
         lines.append((name, *cells))
+    explicit = [f"{stable_decay(method):.2g}" for method in ("Euler", *predictions.RUNGE_KUTTA)]
+    euler = f"{explicit[0]}, but no limit with implicit and implicitfast"
+    lines.insert(-1, ("damping, reduced: h\\|s\\| below", euler, "no limit", *explicit[1:]))
     columns = ("", "Euler, implicit, implicitfast", "discrete", "RK4", "DOP853 around MuJoCo")
     return table(columns, lines)
 
@@ -341,16 +386,12 @@ def border_error() -> float:
 
 
 def damped_runs() -> str:
-    """How the runs in the maps of damping ended."""
+    """How near the borders in the maps of damping are to linear theory."""
     maps = [drawn for drawn in MAPS if drawn.family == "damping"]
-    count: Counter[str] = Counter()
-    for drawn in maps:
-        count.update("".join(drawn.measured))
-    _, worst = stability_maps.summary(maps)
+    runs, worst = stability_maps.summary(maps)
     return prose(
-        f"Of {count.total():,} runs in these maps {count['0']:,} explode, {count['1']:,} are "
-        f"inaccurate and {count['2']:,} accurate. "
-        f"The borders between them agree with linear theory within {100 * worst:.2g} %."
+        f"In {runs:,} runs the borders of stability and of accuracy agree with linear theory "
+        f"within {100 * worst:.2g} %."
     )
 
 
@@ -376,7 +417,7 @@ def at_most(count: dict[str, int]) -> str:
     if share is None:
         return ""
     percent = stability_study.rounded_up(100 * share)
-    return f" (with 95 % confidence at most {percent} % of trusted runs are)"
+    return f" (at most {percent} % of such runs are, with 95 % confidence)"
 
 
 def alone(count: dict[str, int]) -> int:
@@ -389,48 +430,40 @@ def kinds() -> str:
     counted = stability_study.Totals(COUNTS["known"], COUNTS["kinds"])
     tables = stability_study.search_tables(counted)
     (shown,) = [found for found in tables if "by model" in found.title]
-    left_out = (*JUDGES, stability_study.ABOVE, stability_study.TWICE)
-    columns = [at for at, name in enumerate(shown.columns) if name not in left_out]
-    return table(
-        tuple(shown.columns[at] for at in columns),
-        [tuple(row[at] for at in columns) for row in shown.rows],
-    )
+    kept = ["runs", *VERDICTS, stability_study.NEEDLESS]
+    columns = [shown.columns.index(name) for name in kept]
+    by_runs = sorted(shown.rows, key=lambda row: (row[0] == "all", -int(row[columns[0]])))
+    lines = [(row[0], *(row[at] for at in columns)) for row in by_runs]
+    return table(("model and rolling", *kept), lines)
 
 
 def answer() -> str:
-    """Whether a run that is trusted was ever wrong."""
+    """Whether a run that is trusted was ever wrong, and what that allows."""
     found = COUNTS["kinds"]["all"]
     return prose(
-        f"A random search trusted {trusted(found):,} of {ended(found):,} runs, and "
-        f"{wrong_of(found)}."
+        f"A [random search](#the-random-search) trusted {trusted(found):,} of {ended(found):,} "
+        f"runs, and {wrong_of(found)}{at_most(found)}."
     )
 
 
 def honesty() -> str:
-    """How many runs were silent, and what that allows.
-
-    Then how often a run doubted itself, or its error, wrongly.
-    """
+    """What the table of `kinds` does not say: whether estimates and checks were good enough."""
     found = COUNTS["kinds"]["all"]
     known = COUNTS["known"]
     first = COUNTS["settings"][stability_study.FIRST]
-    needless = found.get(stability_study.NEEDLESS, 0)
     above = found.get(stability_study.ABOVE, 0)
     twice = found.get(stability_study.TWICE, 0)
-    outside = ended(COUNTS["kinds"].get(stability_study.OUTSIDE, {}))
-    refused = f"{found.get(REFUSED, 0):,} were refused"
-    if outside:
-        refused += f", {outside:,} of these because they are outside the domain"
     checked = trusted(found) + found.get(WARNED, 0)
+    unchecked = found.get(NOBODY, 0)
+    without = (
+        f", and {unchecked} had none because neither theory could compute them" if unchecked else ""
+    )
     return prose(
-        f"{ended(found):,} random runs, numbered from {first} on, ended as follows. "
-        f"{trusted(found):,} were trusted, and {wrong_of(found)}{at_most(found)}. "
-        f"{found.get(WARNED, 0):,} were doubted, although {needless:,} of these were right. "
-        f"{refused}. "
-        f"Of the {checked:,} runs that were not refused, {alone(found):,} had one independent "
-        f"check and {found.get(NOBODY, 0)} had none; the rest had two. "
-        f"The error of {above} trusted runs was larger than their own estimate, and that of "
-        f"{twice or 'none'} more than twice as large. "
+        f"The runs are numbered from {first} on. "
+        f"The error of {above} trusted runs was larger than their own estimate, in "
+        f"{twice or 'none'} of them more than twice as large. "
+        f"Of the {checked:,} runs that were not refused, {alone(found):,} had only one of the two "
+        f"checks{without}. "
         f"Of {ended(known):,} runs of known cases {trusted(known):,} were trusted, and "
         f"{wrong_of(known)}."
     )
@@ -442,13 +475,13 @@ def swings() -> str:
     A frequency is in brackets where another mode than the slowest has more of the energy.
     """
     columns = (
-        "fill",
+        "fill (depth / diameter)",
         "massless: solid [Hz]",
         "massless: liquid [Hz]",
         "12-oz can: solid [Hz]",
         "12-oz can: liquid [Hz]",
-        "energy in this mode",
-        "amplitude halved after",
+        "its share of the energy (12-oz can)",
+        "amplitude halved after (12-oz can)",
     )
     lines = []
     for fill in (0.1, 0.25, 0.5, 0.75, 0.9):
@@ -482,7 +515,7 @@ def speeds() -> str:
         "at 10° [m/s]",
         "Reynolds number",
         "centrifugal [g]",
-        "film could hold",
+        "film could hold, of the liquid",
     )
     lines = []
     for name in NAMES:
@@ -514,7 +547,7 @@ def terminal_speed(name: str, incline: float) -> str:
     scene = without_doubts(name, incline)
     speed = scene.terminal_speed()
     is_below = centrifugal_ratio(scene, speed) < 1
-    is_one_lump = liquid_in(name, incline).carried < 1 / 3
+    is_one_lump = liquid_in(name, incline).carried < COATING_SHARE
     return f"{speed:.2g}" if is_below and is_one_lump else f"({speed:.2g})"
 
 
@@ -522,16 +555,14 @@ def metre() -> str:
     """Mean accelerations over the first metre, divided by g sin(alpha), with their spread."""
     columns = (
         "water [mL]",
-        "depth [mm]",
         "no friction",
         "friction",
-        "friction doubled to halved",
+        "(doubled to halved)",
         "model holds for",
     )
     lines = []
-    for volume in (1.0, 6.0, 10.0, 50.0, 177.0, 350.0):
+    for volume in (1.0, 10.0, 20.0, 50.0, 177.0, 350.0):
         free = real_beer.water_in(volume, GENTLE, friction=0.0)
-        depth = 2e3 * (free.load.fill or 0) * free.can.radius
         none = free.acceleration() / (free.gravity * math.sin(GENTLE))
         usual = with_water(volume)
         halved = with_water(volume, friction=1 / real_beer.SPREAD)
@@ -539,12 +570,11 @@ def metre() -> str:
         until = real_beer.lump_until(usual)
         cells = (
             f"{volume:g}",
-            f"{depth:.2g}",
             f"{none:.2f}",
             f"{real_beer.over_first_metre(usual):.2f}",
-            f"{real_beer.over_first_metre(doubled):.2f} to "
-            f"{real_beer.over_first_metre(halved):.2f}",
-            "the whole metre" if until > 1 else f"{until:.1f} m",
+            f"({real_beer.over_first_metre(doubled):.2f} to "
+            f"{real_beer.over_first_metre(halved):.2f})",
+            "the whole metre" if until > 1 else f"{until:.2f} m",
         )
         lines.append(cells)
     return table(columns, lines)
@@ -567,19 +597,25 @@ def measured_by_others() -> str:
     cream_in_tin = frozen(USUAL, 1.0, tin).acceleration()
     broth_in_tin = sliding(USUAL, 1.0, tin).acceleration()
 
-    cylinder = f"**a cylinder of {empty:g} kg, {_CYLINDER[0]:.3f} s, and of {heaviest:g} kg, "
-    soups = f"**broth, {_SOUPS[0]:.2f} s, and cream of mushroom, {_SOUPS[1]:.2f} s**"
+    cylinder = quotient(*_CYLINDER)
+    soups = quotient(*_SOUPS)
     lines = [
-        (f"{cylinder}{_CYLINDER[1]:.3f} s**", f"**{quotient(*_CYLINDER)}**"),
-        ("a thin shell, and a solid cylinder without a wall", time_ratio(shell, solid)),
-        ("a thin wall of 0.073 kg, and what is inside turns with it", time_ratio(shell, turning)),
-        ("the same, and what is inside does not turn", time_ratio(shell, not_turning)),
-        (soups, f"**{quotient(*_SOUPS)}**"),
-        ("the broth does not turn, the cream does; cans without mass", time_ratio(down, solid)),
-        ("the same; cans of a tenth of the mass", time_ratio(broth_in_tin, cream_in_tin)),
-        ("both turn with their cans", time_ratio(solid, solid)),
+        (
+            "cylinder, empty and filled: a thin shell, and a solid without a wall",
+            f"{_CYLINDER[0]:.3f} s / {_CYLINDER[1]:.3f} s = {cylinder}",
+            time_ratio(shell, solid),
+        ),
+        ("a thin wall of 0.073 kg, and what is inside turns", cylinder, time_ratio(shell, turning)),
+        ("the same, and what is inside does not turn", cylinder, time_ratio(shell, not_turning)),
+        (
+            "broth and cream: the broth does not turn, the cream does; cans without mass",
+            f"{_SOUPS[0]:.2f} s / {_SOUPS[1]:.2f} s = {soups}",
+            time_ratio(down, solid),
+        ),
+        ("the same; cans of a tenth of the mass", soups, time_ratio(broth_in_tin, cream_in_tin)),
+        ("both turn with their cans", soups, time_ratio(solid, solid)),
     ]
-    return table(("**measured**, and by theory", "ratio of the times"), lines)
+    return table(("what theory assumes", "measured ratio of times", "by theory"), lines)
 
 
 def quotient(first: float, second: float) -> str:

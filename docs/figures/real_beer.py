@@ -1,13 +1,14 @@
 """Draws how real liquids swing, and how they roll, beside this file.
 
 They swing faster than the paper says, and neither slide freely nor are frozen, which footnote 4 of
-the paper leaves open. `docs/real_beer.md` explains it. Run it as
+the paper leaves open. `docs/real_beer.md` and `docs/rolling-liquids.md` explain it. Run it as
 `python docs/figures/real_beer.py`.
 """
 
 import functools
 import math
 import pathlib
+from dataclasses import replace
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -18,8 +19,10 @@ from mjbeer.drawing.words import in_degrees
 from mjbeer.output.plots import COLOURS, GREY, REFERENCE, THEORY, chart, name_below, note
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory import slosh
-from mjbeer.theory.can import THICKNESS, Can, Damping
-from mjbeer.theory.liquid import centrifugal_ratio, liquid, liquid_in
+from mjbeer.theory.can import THICKNESS, Can
+from mjbeer.theory.equations import slip_rate_of
+from mjbeer.theory.liquid import centrifugal_ratio, film_share, liquid, liquid_in
+from mjbeer.theory.liquid_damping import COATING_SHARE
 from mjbeer.theory.liquid_properties import LIQUIDS, NAMES
 from mjbeer.theory.paper_scenes import frozen, sliding
 from mjbeer.theory.scene import GRAVITY, INCLINE, Scene
@@ -64,8 +67,8 @@ _SLOW = 0.6
 _SEEN_CLOSER = 2.0
 """How long the slow ones are shown [s]."""
 _BEYOND = {"color": COLOURS[0], "linestyle": ":", "linewidth": 1.3}
-"""Look of motions in which the wall's centrifugal acceleration exceeds g cos(alpha)."""
-_TOO_FAST = "beyond the model: too fast for the liquid to stay below"
+"""Look of motions in which the liquid need not stay below as one lump."""
+_NO_LUMP = "beyond the model: the liquid need not stay below"
 """Their name."""
 _POINTS = {"color": "black", "linestyle": "", "marker": ".", "markersize": 4}
 """Look of points of exact theory."""
@@ -92,7 +95,7 @@ def water_in(volume: float, incline: float, friction: float = 1.0, drag: float =
     own = used.damping
     linear = friction * own.linear
     quadratic = friction * own.quadratic
-    damping = Damping(linear, quadratic, valid_rates=own.valid_rates)
+    damping = replace(own, linear=linear, quadratic=quadratic)
     return Scene(CAN, used.swing.load, incline, damping=damping, drag=drag)
 
 
@@ -122,11 +125,23 @@ def over_first_metre(motion: Trajectory) -> float:
 def lump_until(motion: Trajectory) -> float:
     """Return how far a can has come [m] when its liquid need no longer stay below as one lump.
 
-    That is when the wall's centrifugal acceleration first exceeds g cos(alpha). It is infinite for
-    a can that stays slower.
+    From there on `liquid_warnings` say so: the wall's centrifugal acceleration exceeds
+    g cos(alpha), or a film on the wall can hold a third of the liquid. It is infinite for a liquid
+    that stays one lump. Between the samples it is found on a straight line.
     """
-    fast = np.flatnonzero(centrifugal_ratio(motion.scene, motion.u_dot) > 1)
-    return float(motion.u[fast[0]] - motion.u[0]) if fast.size else math.inf
+    scene = motion.scene
+    way = motion.u - motion.u[0]
+    rates = np.abs(slip_rate_of(scene, motion.phi_dot, motion.u_dot))
+    turns = np.abs(way) / (math.tau * scene.can.radius)
+    pairs = zip(np.maximum.accumulate(rates), np.maximum.accumulate(turns), strict=True)
+    films = np.array([film_share(scene, rate, turn) for rate, turn in pairs])
+    # 1 is a limit of the model.
+    used = np.maximum(centrifugal_ratio(scene, motion.u_dot), films / COATING_SHARE)
+    if used.max() <= 1:
+        return math.inf
+    after = int(np.argmax(used > 1))
+    around = slice(after - 1, after + 1)
+    return float(np.interp(1.0, used[around], way[around]))
 
 
 def times_of(scene: Scene) -> np.ndarray:
@@ -149,7 +164,7 @@ def _simulated(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the mean accelerations over the first metre of all volumes, by MuJoCo.
 
-    Then whether each can stays slow enough for its liquid to be one lump.
+    Then whether the liquid of each stays one lump.
     """
     scenes = [water_in(float(volume), incline, friction, drag) for volume in _VOLUMES]
     runs = [let_go(scene, times_of(scene)) for scene in scenes]
@@ -212,7 +227,10 @@ def draw_first_metre(path: pathlib.Path) -> None:
     The left panel has three inclines, the right one the spread on the gentlest.
     """
     mean, _ = _simulated(math.radians(_INCLINES[0]))
-    title = f"An estimate: a little water slows a can from ½ to {mean.min():.2f} g sin α"
+    little = float(np.interp(_ROSCH, _VOLUMES, mean))
+    title = (
+        f"An estimate: {little:.2f} g sin α with {_ROSCH:g} mL of water, {mean[-1]:.2f} nearly full"
+    )
     subtitle = (
         f"12-oz can of {1e3 * CAN.mass:.3g} g with water, let go with a level surface; "
         "no measurement is fitted; points are exact theory"
@@ -225,7 +243,7 @@ def draw_first_metre(path: pathlib.Path) -> None:
         _draw_spread(spread)
         _note_facts(inclines)
         (lump,) = inclines.plot([], [], color=COLOURS[0], label="MuJoCo: friction of water")
-        (fast,) = inclines.plot([], [], label=_TOO_FAST, **_BEYOND)
+        (fast,) = inclines.plot([], [], label=_NO_LUMP, **_BEYOND)
         name_below([inclines], 2, [lump, fast])
 
 
@@ -325,7 +343,7 @@ def draw_liquids(path: pathlib.Path) -> None:
                     axes.plot(times[shown], run.u_dot[shown], **(_BEYOND | {"color": colour}))
                 axes.plot(times[shown], speed[shown], color=colour)
                 axes.plot(truth.time[shown[::50]], truth.u_dot[shown[::50]], **_POINTS)
-                if is_real and lump.all():
+                if is_real and scene.terminal_speed() < _SLOW:
                     terminal = [scene.terminal_speed()] * 2
                     axes.plot([0, last], terminal, color=colour, linestyle="--", linewidth=1)
             end = float(np.interp(_SEEN_CLOSER, times, run.u_dot))
@@ -338,7 +356,7 @@ def draw_liquids(path: pathlib.Path) -> None:
                 note(fast, name, (times[steepest], _FAST - 1), (-6, 4), color=colour, ha="right")
         note(fast, "glycerol, honey, ice", (times[-1], 0.24), (-4, 7), ha="right")
         (terminal,) = fast.plot([], [], "--", color=GREY, linewidth=1, label="terminal speed")
-        (beyond,) = fast.plot([], [], label=_TOO_FAST, **(_BEYOND | {"color": GREY}))
+        (beyond,) = fast.plot([], [], label=_NO_LUMP, **(_BEYOND | {"color": GREY}))
         for axes in (fast, slow):
             axes.set_xlabel("time t [s]")
         slow.set_ylabel("speed [m/s]")

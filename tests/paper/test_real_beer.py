@@ -23,6 +23,7 @@ from real_beer import (
     SWING,
     capillary_length,
     let_go,
+    lump_until,
     over_first_metre,
     times_of,
     water_in,
@@ -98,6 +99,36 @@ def test_the_page_has_the_slowest_can_and_what_its_wall_can_hold() -> None:
     speed = np.interp(1.0, run.u - run.u[0], run.u_dot)
     film = FILM_LOAD * math.sqrt(LIQUIDS["water"].viscosity * speed / GRAVITY)
     assert 1e6 * film * CAN.radius * CAN.length == pytest.approx(3.7, abs=0.05)
+
+
+@pytest.mark.parametrize(
+    ("volume", "reason"), [(1.0, "coats the can"), (10.0, "coats the can"), (50.0, "centrifugal")]
+)
+def test_a_run_that_ends_before_its_liquid_is_no_lump_has_no_warning(
+    volume: float, reason: str
+) -> None:
+    """A hundredth before that place, and after it."""
+    scene = water_in(volume, INCLINES[0])
+    run = let_go(scene, times_of(scene))
+    way = run.u - run.u[0]
+    until = lump_until(run)
+    for share, warned in ((0.99, False), (1.01, True)):
+        duration = float(np.interp(share * until, way, run.time))
+        short = simulate(scene, duration, -scene.incline, tolerance=1e-6)
+        assert (reason in str(short.liquid_warnings)) == warned
+
+
+def test_the_page_has_the_amounts_whose_liquid_stays_one_lump() -> None:
+    """12 to 32 mL on 2 degrees; with air 12 and 13 mL, whose cans are then slower than 1/2."""
+    for volume, whole in ((12.0, True), (11.5, False), (32.0, True), (33.0, False)):
+        scene = water_in(volume, INCLINES[0])
+        assert (lump_until(let_go(scene, times_of(scene))) > 1) == whole
+    for volume in (12.0, 13.0):
+        scene = water_in(volume, INCLINES[0], drag=DRAG)
+        run = let_go(scene, times_of(scene))
+        assert over_first_metre(run) < 0.5
+        assert lump_until(run) > 1
+    assert first_metre(11.0, INCLINES[0]) < 0.5 < first_metre(11.5, INCLINES[0])
 
 
 def metre_of_a_full_can(incline: float) -> float:

@@ -108,7 +108,7 @@ def test_a_bend_that_the_track_hardly_tells_is_doubted_sooner(
 def test_a_damping_far_from_its_law_is_doubted(
     factor: float, error: float, is_doubted: bool
 ) -> None:
-    """The law itself has an error of a tenth."""
+    """The polynomial of the law has an error of a tenth."""
     found = doubts_of_law("water", factor, error)
     begin = f"the damping is {factor:.2g} times that of water: was it water"
     assert [doubt.startswith(begin) for doubt in found] == [True] * is_doubted

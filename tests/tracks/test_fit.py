@@ -7,6 +7,7 @@ import pathlib
 import re
 import shlex
 import shutil
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 from unittest import mock
@@ -72,6 +73,14 @@ def assert_good(result: Fit, **truth: float) -> None:
 
 def test_the_truth_of_water_is_within_the_errors(water_fit: Fit) -> None:
     assert_good(water_fit, incline=WATER.incline, fill=0.5, damping=1.0)
+
+
+def test_a_fit_says_what_the_polynomial_adds_where_there_is_one(water_fit: Fit) -> None:
+    own = water_fit.scene.damping_law
+    linear = replace(water_fit.scene, damping=replace(own, quadratic=0.0))
+
+    assert "as a polynomial stands for w^1.5" in str(water_fit)
+    assert "polynomial" not in str(replace(water_fit, scene=linear))
 
 
 def test_the_truth_of_oil_is_within_the_errors() -> None:

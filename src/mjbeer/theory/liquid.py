@@ -159,8 +159,7 @@ def lump_warning(
     """Return why a liquid is no lump, in one sentence, or None if it is one.
 
     It slips by up to `slip_rate` [rad/s]. `spread` says where or when `centrifugal_ratio` is more
-    than 1, and is empty if it never is. The can has made so many `turns`. In the first one the film
-    is only on the wall that has come out of the liquid so far.
+    than 1, and is empty if it never is. The can has made so many `turns`.
     """
     if scene.damping_law.valid_rates is None:
         return None
@@ -169,7 +168,7 @@ def lump_warning(
     if spread:
         exceeds = "the wall's centrifugal acceleration is more than g cos(alpha)"
         reasons.append(f"{spread} {exceeds}, which spreads it round the can")
-    in_film = share_in_film(scene.damping_law.coating_rate, slip_rate) * min(1.0, turns)
+    in_film = film_share(scene, slip_rate, turns)
     if in_film > COATING_SHARE:
         share = f"{100 * in_film:.0f} %" if in_film < 1 else "all"
         film = f"at {slip_rate:.3g} rad/s the film on the wall can hold {share} of it"
@@ -182,6 +181,15 @@ def lump_warning(
 
 def _no_lump(name: str, reasons: list[str]) -> str:
     return f"{name} as one lump is an order of magnitude only: {'; '.join(reasons)}"
+
+
+def film_share(scene: Scene, slip_rate: float, turns: float) -> float:
+    """Return the share of a liquid that the film on the wall can hold; from 1 on, all.
+
+    Can and liquid slip by up to `slip_rate` [rad/s], and the can has made so many `turns`. In the
+    first one the film is only on the wall that has come out of the liquid so far.
+    """
+    return share_in_film(scene.damping_law.coating_rate, slip_rate) * min(1.0, turns)
 
 
 def centrifugal_ratio(scene: Scene, u_dot: np.ndarray | float) -> np.ndarray | float:

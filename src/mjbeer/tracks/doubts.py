@@ -17,8 +17,10 @@ _STANDARD_ERRORS = 3
 """A value is doubted if it is off by more of its standard errors."""
 _LEAST_CHANCE = 0.1
 """The least part of a measurement's error by which the fitted value may differ by chance."""
-LAW_ERROR = 0.1
-"""Relative error of a liquid's damping law itself, that of W^1.5 and its polynomial."""
+POLYNOMIAL_ERROR = 0.1
+"""Relative error of a liquid's damping in which a polynomial stands for W^1.5.
+
+It is no bound on how far a real liquid differs from the law."""
 _OPEN = 0.3
 """An unknown that may change by this part of a large change is named as left open."""
 
@@ -90,11 +92,11 @@ def _wrong_measurements(minimum: Minimum, unknowns: Sequence[Unknown]) -> Iterat
 
 
 def doubts_of_law(liquid: str, factor: float, error: float) -> tuple[str, ...]:
-    """Doubt a liquid whose damping is farther from its law than the law's own error explains.
+    """Doubt a liquid whose damping is farther from its law than errors explain.
 
     `factor` is the damping divided by the law's, and `error` its standard error.
     """
-    if abs(factor - 1) <= _STANDARD_ERRORS * math.hypot(error, LAW_ERROR):
+    if abs(factor - 1) <= _STANDARD_ERRORS * math.hypot(error, POLYNOMIAL_ERROR):
         return ()
     reasons = f"was it {liquid}, at 20 °C, and did the camera look squarely at the board?"
     return (f"the damping is {factor:.2g} times that of {liquid}: {reasons}",)

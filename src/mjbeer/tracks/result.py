@@ -11,7 +11,7 @@ from mjbeer import require
 from mjbeer.drawing.words import in_words
 from mjbeer.simulation.run import Run
 from mjbeer.theory.scene import Scene
-from mjbeer.tracks.doubts import LAW_ERROR
+from mjbeer.tracks.doubts import POLYNOMIAL_ERROR
 from mjbeer.tracks.track import Track
 from mjbeer.tracks.unknowns import FITTABLE
 
@@ -73,8 +73,10 @@ class Fit:
         if name == "incline":
             return f"incline, less rolling resistance: {line}"
         if name == "damping":
-            of_law = f"± {LAW_ERROR * value:.2g} of the law itself"
-            return f"damping as a multiple of its law: {line}, and {of_law}"
+            law = self.scene.damping_law
+            if law.liquid and law.quadratic > 0:
+                line += f", and ± {POLYNOMIAL_ERROR * value:.2g} as a polynomial stands for w^1.5"
+            return f"damping as a multiple of its law: {line}"
         return f"{name}: {line}"
 
     @property

@@ -103,14 +103,14 @@ def test_others_are_compared_at_equal_error(made_up: Benchmark) -> None:
     assert first == (
         "frozen, 1e-03 rad",
         "1e+03 to 2e+03 ms",
-        "2 (2 to 2)",
-        "2 (2 to 2)",
+        "2.0 (2.0 to 2.0)",
+        "2.0 (2.0 to 2.0)",
         "-",
         "-",
-        "0.5 (0.5 to 0.5)",
+        "0.50 (0.50 to 0.50)",
     )
     assert last == ("frozen, 1e-06 rad", "not reached", "-", "-", "-", "-", "-")
-    assert tables.ratio_range(made_up, tables.RK4, 1e-3) == "2 to 2"
+    assert tables.ratio_range(made_up, tables.RK4, 1e-3) == "2.0 to 2.0"
     assert tables.ratio_range(made_up, tables.RK4, 1e-6) == "-"
 
 

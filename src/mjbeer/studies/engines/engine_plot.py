@@ -35,12 +35,15 @@ _APART = 0.06
 """Least distance of two labels, in heights of a panel."""
 _PALE = 0.3
 """Opacity of the curves without a name."""
+_SMALL = 22
+_LARGE = 75
+"""Areas of the markers, the second at 1 ms [square points]."""
 _SUBTITLE = (
-    "Each point is one timestep: 4, 2, 1, 0.4 and 0.1 ms from left to right. Each engine's closest "
-    "curve at 1 ms is named, and its other shapes and settings are pale. Full markers: the error "
-    "falls with the timestep h as the name says. Open markers: it has a floor [rad] or no power. "
-    "SciPy is no engine; it has tolerances in place of timesteps, as Drake's error control has. "
-    "Errors below 1e-7 rad are left out."
+    "Each point is one timestep: 4, 2, 1 (large), 0.4 and 0.1 ms from left to right. Each engine's "
+    "closest curve at 1 ms is named; its other shapes and settings are pale. Full markers: the "
+    "error falls with the timestep h as the name says. Open markers: it has a floor [rad], or no "
+    "power. SciPy is no engine; it has tolerances in place of timesteps, as Drake's error control "
+    "has. Errors below 1e-7 rad are left out."
 )
 
 
@@ -54,7 +57,9 @@ def draw(results: Results, path: pathlib.Path | Picture) -> None:
       OutputError: if a file cannot be written.
     """
     styles = dict(zip(_engines(results), itertools.cycle(_STYLES), strict=False))
-    with chart(path, len(CASES), 2, 11.5, 4.6 * len(CASES), _title(results), _SUBTITLE) as panels:
+    with chart(
+        path, 2 * len(CASES), 1, 8.5, 7.2 * len(CASES), _title(results), _SUBTITLE
+    ) as panels:
         places = itertools.product(CASES.values(), (False, True))
         for axes, (case, tuned) in zip(panels, places, strict=True):
             curves = {}
@@ -104,9 +109,7 @@ def _title(results: Results) -> str:
             largest[way] = max(row.error, largest.get(way, 0.0))
     least = min(largest.values())
     most = max(largest.values())
-    return (
-        f"At 1 ms and their defaults, engines roll a can {least:.1g} to {most:.2g} rad wrong in 2 s"
-    )
+    return f"At their defaults and 1 ms, engines are {least:.1g} to {most:.2g} rad off in 2 s"
 
 
 def _engines(results: Results) -> list[str]:
@@ -116,18 +119,26 @@ def _engines(results: Results) -> list[str]:
 def _draw_curve(axes: Axes, shown: Sequence[Row], style: _Style, pale: bool) -> None:
     order = order_of(shown)
     converges = order is not None and order.converges
-    axes.plot(
-        [1e3 * min(row.seconds) for row in shown],
-        [row.error for row in shown],
-        "-",
+    times = [1e3 * min(row.seconds) for row in shown]
+    errors = [row.error for row in shown]
+    if pale:
+        axes.plot(times, errors, "-", color=style.colour, linewidth=0.9, alpha=_PALE, zorder=1)
+        return
+    axes.plot(times, errors, "-", color=style.colour, linewidth=1.6, zorder=2)
+    axes.scatter(
+        times,
+        errors,
+        [_area(row) for row in shown],
         marker=style.marker,
-        color=style.colour,
-        markerfacecolor=style.colour if converges else "white",
-        markersize=3.5 if pale else 5.5,
-        linewidth=0.9 if pale else 1.6,
-        alpha=_PALE if pale else 1.0,
-        zorder=1 if pale else 2,
+        edgecolors=style.colour,
+        facecolors=style.colour if converges else "white",
+        zorder=3,
     )
+
+
+def _area(row: Row) -> float:
+    """Return the area of a marker, which is large at 1 ms [square points]."""
+    return _LARGE if row.timestep == COARSE and row.engine != EQUATION else _SMALL
 
 
 def _name_ends(axes: Axes, ends: dict[CurveKey, list[Row]], styles: dict[str, _Style]) -> None:
