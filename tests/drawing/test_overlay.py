@@ -6,9 +6,10 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from mjbeer import Scene, Trajectory, frozen, pendulum, simulate, sliding
-from mjbeer.drawing.overlay import Spans, draw_title, draw_warning, note_spans
+from mjbeer import Scene, Trajectory, exact, frozen, pendulum, simulate, sliding
+from mjbeer.drawing.overlay import Spans, draw_header, draw_title, draw_warning, note_spans
 from mjbeer.drawing.sheet import overlap
+from mjbeer.drawing.style import FilmStyle
 from tests.support.recorder import Recorder
 
 
@@ -24,6 +25,20 @@ def test_no_title_runs_into_the_time(width: int) -> None:
     assert not overlap(time, title)
     assert not overlap(pace, scene)
     assert not overlap(title, scene)
+
+
+@pytest.mark.parametrize("width", [640, 1280])
+def test_what_the_marks_mean_does_not_run_into_the_facts(width: int) -> None:
+    sheet = Recorder(width, 360)
+    run = exact(frozen(), np.linspace(0, 0.5, 51), 1.0)
+    style = FilmStyle("a title", marks=("paths", "normal"), facts="let go on top at t = 0, μ = 1")
+
+    draw_header(sheet, style, run, 0.0, 0.25)
+
+    facts, *legends = sheet.boxes[4:]
+    assert sheet.words[4] == style.facts
+    assert sheet.words[-1] == "normal force N"
+    assert max(legend.right for legend in legends) < facts.left
 
 
 @pytest.mark.parametrize("width", [400, 1280])

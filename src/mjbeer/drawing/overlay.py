@@ -18,7 +18,7 @@ HEIGHT = 4.1
 """Height of the first two lines above a picture, in units of the sheet, as are all heights and
 distances here."""
 HEADER = 6.0
-"""Height with the third line, which says what the marks mean."""
+"""Height with the third line, which says what the marks mean, and what else to know."""
 STRIP = 10
 """Height of the charts below a picture."""
 NOTE = 3
@@ -66,17 +66,17 @@ def draw_header(
     if duration > 0:
         digits = max(2, math.ceil(-math.log10(duration)) + 1)
     sheet.blank(0, round(HEADER * unit))
-    words = in_words(trajectory.scene)
-    if style.facts:
-        words = f"{words}; {style.facts}"
-    draw_title(sheet, style.title, words, time, speed, digits)
+    draw_title(sheet, style.title, in_words(trajectory.scene), time, speed, digits)
 
     body = scene_names(trajectory.scene).body
     legends = [legend for mark in style.marks for legend in LEGENDS[mark]]
     size = _LEGEND * unit
-    wanted = _legend_width(sheet, [legend.meaning.format(body) for legend in legends], size)
-    size *= min(1.0, (sheet.width - 2 * _MARGIN * unit) / max(wanted, 1.0))
     row = _LEGEND_ROW * unit
+    end = sheet.width - _MARGIN * unit
+    limit = sheet.text((end, row), style.facts, size, anchor=(1, 0.5)).left - 2 * unit
+    meanings = [legend.meaning.format(body) for legend in legends]
+    while size > _LEAST * unit and _MARGIN * unit + _legend_width(sheet, meanings, size) > limit:
+        size -= 1
     column = _MARGIN * unit
     behind_sign, behind_meaning = _LEGEND_GAPS
     for sign, colour, meaning in legends:

@@ -235,7 +235,7 @@ class Race(Film):
         """Return what holds for all cans."""
         facts = [f"incline {in_degrees(display.scenes[0].incline)}"]
         if not self.centres:
-            facts = [f"{self.length:g} m", *facts, "held at the finish"]
+            facts = [f"{self.length:g} m", *facts]
         if self.facts:
             facts.append(self.facts)
         return ", ".join(facts)

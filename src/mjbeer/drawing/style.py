@@ -59,7 +59,7 @@ class FilmStyle:
     notes: tuple[str, ...] = ()
     """What is said while it happens; the charts show when each of them holds."""
     facts: str = ""
-    """What else to know of the motion, such as how it is started; it stands behind the scene."""
+    """What else to know of the motion, such as how it is started; it stands at the right."""
     notes_aside: bool = False
     """Whether what moves passes beside the notes, which then need no room above it."""
     answer: str = ""

@@ -128,7 +128,7 @@ STORIES = (
                 ("normal",),
                 "pan",
                 notes=("light", "heavy"),
-                facts="spun to 45 rad/s",
+                facts="beer set spinning at 45 rad/s",
             ),
         ),
     ),

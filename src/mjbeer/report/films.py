@@ -239,7 +239,7 @@ FILMS: dict[str, Film] = {
             camera="fixed",
             notes=("flies", "heavy", "light"),
             notes_aside=True,
-            facts="pushed to 1700°/s",
+            facts="set turning at 1700°/s",
         ),
     ),
     "carry": Carry(),
