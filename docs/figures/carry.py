@@ -34,9 +34,9 @@ def runs(modes: int) -> list[Carried]:
 
 
 def draw(path: pathlib.Path) -> None:
-    """Draw the force while a can is moved in a second, and what a rigid can misses.
+    """Draw the force while a can is moved in a second, and what a rigid can lacks.
 
-    What it misses is drawn against the time of the move.
+    What it lacks is drawn against the time of the move.
     """
     beer = runs(1)
     rigid = runs(0)
@@ -49,10 +49,15 @@ def draw(path: pathlib.Path) -> None:
     # Beyond it, theory is indicative alone.
     within = -highest > -INDICATIVE
     title = (
-        f"A rigid can misses up to {missed[within].max():.0f} % of the gripper's force "
-        f"and {ringing[within].max():.0f} % of ringing"
+        f"A rigid can pulls the gripper with up to {missed[within].max():.0f} % less force, "
+        "and does not ring"
     )
-    subtitle = "Half a 12-oz can of beer is moved by 0.4 m on a path of the least jerk."
+    subtitle = (
+        f"Half a 12-oz can of beer is moved by {DISTANCE:g} m on a path of the least jerk. "
+        f"After the stop the beer rings with up to {ringing[within].max():.0f} % of the peak "
+        f"force. Grey: its surface rises by more than {INDICATIVE:g} radii, and theory is "
+        "indicative alone."
+    )
     with plots.chart(path, columns=2, width=9, height=4.4, title=title, subtitle=subtitle) as (
         left,
         right,
@@ -73,15 +78,14 @@ def draw(path: pathlib.Path) -> None:
         right.plot(MOVES, ringing, color=green)
         first = float(np.interp(-INDICATIVE, -highest, MOVES))
         right.axvspan(min(MOVES), first, color=plots.GREY, alpha=0.12, linewidth=0)
+        plots.note(right, "beer: ringing after the stop", (1.25, 15.5), (0, 8), color=green)
         plots.note(
-            right, f"surface rises by\nmore than {INDICATIVE:g} R", (min(MOVES), 24), (4, -12)
+            right, "rigid can: lacking at the peak", (1.6, -0.5), (0, -9), color=orange, ha="center"
         )
-        plots.note(right, "ringing after the stop", (1.45, 12.5), (4, 8), color=green)
-        plots.note(right, "missing from the peak", (1.6, -0.5), (-4, -9), color=orange)
         right.set(
             xlabel="time that the move takes [s]",
             ylabel="share of the peak force [%]",
-            title="What a rigid can misses",
+            title="What the rigid can lacks",
             ylim=(-3, 24),
         )
 

@@ -88,7 +88,7 @@ def draw_rolling() -> None:
                 color="black" if axes is contact else "#C4C4C4",
                 linewidth=2,
             )
-            axes.set(xlim=(-1.5, 1.5), ylim=(-2.35, 1.5))
+            axes.set(xlim=(-1.5, 1.5), ylim=(-2.65, 1.5))
             axes.set_title(name, loc="center", fontweight="bold")
         fixed = np.array([0, 0.75])
         site = on_circle(math.radians(-50), 0.75)
@@ -102,8 +102,9 @@ def draw_rolling() -> None:
         point_at(reduced, site, (-0.5, -1.25), "a point of the can")
         write(
             reduced,
-            "There is no constraint:\nthe tendon's armature adds\nthe inertia of rolling.",
-            (0, -1.9),
+            "There is no constraint. The\ntendon is a line between two\n"
+            "points. Its armature, an inertia\nagainst change of its length,\nis that of rolling.",
+            (0, -2.05),
         )
         arrow(equality, np.array([0, 0]), np.array([1.4, 0]), LETTER)
         write(equality, "u", (1.3, 0.2), LETTER)
@@ -115,7 +116,7 @@ def draw_rolling() -> None:
             connectionstyle="arc3,rad=-0.3",
         )
         write(equality, "roll", (0.1, 1.4), LETTER)
-        write(equality, "Two joints are tied\nby an equality constraint,\nroll = u/a.", (0, -1.9))
+        write(equality, "Two joints are tied\nby an equality constraint,\nroll = u/a.", (0, -1.85))
         arrow(contact, np.array([0, -1.55]), np.array([0, -1.02]), FORCE)
         write(contact, "N", (0.2, -1.35), FORCE)
         arrow(contact, np.array([0, -1.07]), np.array([-0.7, -1.07]), FORCE)
@@ -123,7 +124,7 @@ def draw_rolling() -> None:
         write(
             contact,
             "A cylinder lies on a plane:\nfriction makes it roll\nas long as F ≤ μN.",
-            (0, -1.95),
+            (0, -1.85),
         )
 
 
@@ -161,12 +162,23 @@ def draw_layer() -> None:
             connectionstyle="arc3,rad=-0.2",
         )
         write(axes, "w", (0.68, 0.18), FORCE)
-        write(axes, "The wall passes the liquid\nat a speed U = aw.", (-0.05, 0.5), FORCE)
+        write(
+            axes,
+            "The can turns past the liquid\nat w [rad/s]: its wall, at the\n"
+            "radius a, has the speed U = aw.",
+            (-0.05, 0.5),
+            FORCE,
+        )
         begins = on_circle(math.radians(40), 0.98)
         thickest = on_circle(math.radians(-64), 0.9)
         still = on_circle(math.radians(10), 0.62)
         point_at(axes, begins, (1.75, -0.8), "The layer begins\nwhere the wall enters\nthe liquid.")
-        point_at(axes, thickest, (-1.8, -0.55), "It is thickest\nwhere the wall leaves:\n√(νX/U).")
+        point_at(
+            axes,
+            thickest,
+            (-1.8, -0.55),
+            "It is thickest\nwhere the wall leaves:\n√(νX/U), ν: viscosity.",
+        )
         point_at(axes, still, (1.75, -0.02), "The liquid above\nthe layer lies still.")
         axes.set(xlim=(-2.4, 2.4), ylim=(-1.35, 1.1))
 
@@ -182,7 +194,10 @@ def landscape(axes: Axes, scene: Scene, low: float, high: float, energy: float) 
     phi = np.linspace(low, high, 401)
     axes.plot(phi, height(scene, phi), color="black", linewidth=1.5)
     axes.axhline(energy, color=GREY, linestyle="--", linewidth=1)
-    axes.set(xticks=[], yticks=[], xlabel="φ")
+    quarter = math.pi / 2 if high - low < math.tau else math.tau
+    marks = quarter * np.arange(math.ceil(low / quarter), math.floor(high / quarter) + 1)
+    axes.set_xticks(marks, [f"{math.degrees(mark):.0f}°".replace("-", "−") for mark in marks])
+    axes.set_xlabel("φ, angle of the load")
     axes.margins(y=0.15)
     axes.grid(visible=False)
 
@@ -258,8 +273,13 @@ def draw_slope(axes: Axes) -> None:
 def draw_legs() -> None:
     """Draw the legs into which exact theory cuts a motion."""
     title = "A motion is cut into arcs, which turn back, and turns, which do not"
-    subtitle = "V is the potential and E the energy of the motion."
-    with chart(HERE / "legs", 1, 2, 9, 4.3, title, subtitle) as (swing, slope):
+    subtitle = (
+        "frozen beer on 8°: potential V (solid) and energy E of a motion (dashed). An arc leads "
+        "to a turning point, where E = V, and back; a turn passes a crest. Exact theory integrates "
+        "the time of each."
+    )
+    with chart(HERE / "legs", 1, 2, 9, 4.8, title, subtitle) as (swing, slope):
+        swing.set_ylabel("energy above V(0) / amplitude of V")
         draw_swing(swing)
         draw_slope(slope)
 

@@ -57,7 +57,7 @@ def draw_outcomes(friction: float = 0.5, duration: float = 2.0) -> None:
     # Beyond parting, there is nothing to see.
     seen = (part < STEEPEST, slip < part - near, (down <= part + near) & (down < STEEPEST))
     gentle = float(np.interp(0.5, fills, np.degrees(np.minimum(down, slip))))
-    title = f"Half full, frozen beer rocks below {gentle:.0f}° and hops above"
+    title = f"Half full, frozen beer rocks below {gentle:.0f}° and lifts off above"
     subtitle = (
         f"massless can of frozen beer, released at rest with φ = 0, for {duration:g} s; "
         "lines are exact theory"
@@ -70,7 +70,10 @@ def draw_outcomes(friction: float = 0.5, duration: float = 2.0) -> None:
         name(axes, "rocks", (9, 0.35))
         name(axes, "rolls down", (5, 0.9))
         name(axes, f"slips, with a friction coefficient of {friction:g}", (33, 0.13))
-        name(axes, "leaves the incline,\nhowever rough it is", (31, 0.65))
+        # The slipping wedge beside the part where cans roll down is narrow.
+        point = {"arrowstyle": "-", "linewidth": 0.8}
+        axes.annotate("slips", (14, 0.925), (20, 0.88), va="center", arrowprops=point)
+        name(axes, "lifts off the incline,\nhowever rough it is", (31, 0.65))
 
 
 def border(excess: Callable[[Scene], float], fill: float) -> float:
@@ -110,7 +113,7 @@ def draw_periods() -> None:
         )
         measured[row, swings[row]] = swept["period"]
         theory[row, swings[row]] = [scene.period(amplitude) for amplitude in of_scene]
-    title = f"A frozen can takes {np.nanmin(theory):.2f} s for a swing, and longer if wide or steep"
+    title = f"A frozen can swings in {np.nanmin(theory):.2f} s, more slowly if wide or steep"
     subtitle = (
         "half-full massless can, beer frozen, released at rest below its equilibrium; "
         "lines are exact theory"
@@ -124,6 +127,8 @@ def draw_periods() -> None:
         periods = (0.5, 0.55, 0.6, 0.7, 0.8, 1.0)
         lines = axes.contour(tilts, swing, theory.T, periods, colors="white", linewidths=1)
         axes.clabel(lines, fmt=lambda period: f"{period:g} s")
+        # The shortest swings are the small ones on level ground, in the corner of the map.
+        axes.text(0.3, 4, f"{np.nanmin(theory):.2f} s", color="white", fontsize=10)
         axes.plot(tilts, np.degrees(largest), **LINE)
         axes.set(
             xlabel="incline [°]",

@@ -66,7 +66,7 @@ def draw(monkeypatch: pytest.MonkeyPatch, fail_at: str = "") -> list[video.FilmJ
 
     def few(folder: pathlib.Path) -> list[video.PlotJob]:
         names = [f"error-{case}" for case in Benchmark.load(SHIPPED).cases]
-        names += ["engines", "stability-solref", "told"]
+        names += ["error-contact", "engines", "stability-solref", "told"]
         jobs = [video.PlotJob(plot, folder / name, in_memory=True) for name in names]
         return [*jobs, video.PlotJob(plot, folder / "stability-more")]
 

@@ -108,7 +108,7 @@ STORIES = (
     Story(
         "looping",
         "Beer loops unevenly in its can, slow or fast",
-        in_words(sliding()),
+        f"{in_words(sliding())}; the fast can would lift off, and is kept on it",
         "The beer loops in its can. The plots show how far it is ahead of an even rotation, over "
         "one turn. By eqs. (26) and (28) it is ahead in one half of the turn and behind in the "
         "other. In truth there is a second ripple, twice in a turn, which remains however fast the "
@@ -174,7 +174,7 @@ STORIES = (
         "then it hops, 7 mm high. The film begins 0.45 s after the can was let go: each time the "
         "beer goes through below it presses the can down harder, until, going up, it takes the "
         "can along. The landing is a blow of more than eight weights (mean of 11 ms).",
-        PlotSize(3, 1, 6, 7.4),
+        PlotSize(2, 1, 6, 5.6),
         story_plots.draw_slip_and_hop,
         MotionFilm(
             story_plots.PARTING,

@@ -147,14 +147,14 @@ def draw_looping(panels: Sequence[Axes]) -> None:
     """Draw how unevenly beer loops, slowly and fast, beside eqs. (26) and (28)."""
     phase = np.linspace(0, 2 * math.pi, 201)
     x = np.degrees(phase)
-    for axes, start, about in zip(panels, (SLOW, 400.0), ("Slow", "Fast, held down"), strict=True):
+    for axes, start, about in zip(panels, (SLOW, 400.0), ("Slow", "Fast"), strict=True):
         turn = loop(sliding(), start)
         phi = sum(turn.ripple[k] * np.sin(k * phase) for k in range(1, 40))
         once = value(oscillation.CORRECTED_28, turn) * np.sin(phase)
         corrected = np.degrees(once + turn.delta / 4 * np.sin(2 * phase))
         printed = np.degrees(value(oscillation.PRINTED_28, turn) * np.sin(phase))
-        axes.plot(x, printed, label="as printed, (26) and (28): one ripple in a turn", **_PRINTED)
-        axes.plot(x[::5], corrected[::5], "k.", label="corrected: a second, twice in a turn")
+        axes.plot(x, printed, label="(26) and (28) as printed: sin Ωt alone", **_PRINTED)
+        axes.plot(x[::5], corrected[::5], "k.", label="corrected: sin Ωt and sin 2Ωt")
         axes.plot(x, np.degrees(phi), label="MuJoCo", **SIMULATED)
         most = math.degrees(np.abs(phi).max())
         axes.set(
@@ -204,7 +204,9 @@ def draw_rocking(panels: Sequence[Axes]) -> None:
     error.plot(times, np.degrees(run.phi - truth), **SIMULATED)
     error.plot(times, np.degrees(printed - truth), **_PRINTED)
     end = times[-1]
+    note(angle, "MuJoCo", (end, 27), (6, 0), color=COLOURS[0])
     note(angle, f"equilibrium,\neq. (53): {rest:.1f}°", (end, rest), (6, 15))
+    note(angle, "footnote 8\nas printed", (end, 5), (6, 0), color=COLOURS[1])
     furthest = math.degrees(np.abs(printed - truth).max())
     note(error, "MuJoCo", (end, 0), (6, 0), color=COLOURS[0])
     note(error, "footnote 8\nas printed", (end, -0.7), (6, 0), color=COLOURS[1])
@@ -213,7 +215,7 @@ def draw_rocking(panels: Sequence[Axes]) -> None:
         axes.set_xlim(-0.04, 2.72)
         axes.set_xticks(np.linspace(0, 2, 5))
     error.set(
-        ylabel="φ less that of theory [°]",
+        ylabel="error of φ [°]",
         title=f"Footnote 8 as printed is up to {furthest:.1f}° from exact theory",
     )
     share_time(panels)
@@ -270,7 +272,7 @@ def draw_slip_and_hop(panels: Sequence[Axes]) -> None:
     times = np.linspace(0, 1, 1001)
     rolling = exact(contact.scene, times, math.pi)
     leaves_at = rolling.rolls_until()
-    friction, slipped, moved = panels
+    friction, moved = panels
     needed = rolling.forces.needed_friction
     too_little = times[np.argmax(needed > FRICTION)]
     slid = 1e3 * contact.slip
@@ -281,8 +283,6 @@ def draw_slip_and_hop(panels: Sequence[Axes]) -> None:
     friction.axhline(FRICTION, **REFERENCE)
     note(friction, f"all that there is: μ = {FRICTION:g}", (0.5, FRICTION), (6, 8))
     note(friction, "needed to roll,\nexact theory", (0.5, 0.3), (6, 16), color="black")
-    slipped.plot(contact.time[before], slid[before], color=COLOURS[1])
-    note(slipped, "slid instead of rolled", (0.74, 0.0), (-8, 10), color=COLOURS[1], ha="right")
     moved.plot(contact.time, slid, color=COLOURS[1])
     moved.plot(contact.time, lifted, color=COLOURS[0])
     note(moved, "slid instead\nof rolled", (0.94, 15), (-2, 0), color=COLOURS[1], ha="right")
@@ -290,23 +290,28 @@ def draw_slip_and_hop(panels: Sequence[Axes]) -> None:
     for axes in panels:
         axes.axvline(leaves_at, **REFERENCE)
         axes.set_xlim(0.5, times[-1])
-    note(moved, "from here on rolling\nwould need a pull", (leaves_at, 6), (-6, 0), ha="right")
+    note(friction, "from here on rolling\nwould need a pull", (leaves_at, 1.5), (6, 0))
+    _draw_slip_closer(moved, contact.time[before], slid[before])
     friction.set(
         ylabel="friction / normal force",
         title=f"Rolling needs more friction than there is from {too_little:.2f} s",
         ylim=(0, 2.2),
     )
-    most = np.abs(slid[before]).max()
-    slipped.set(
-        ylabel="slid [mm]",
-        title=f"MuJoCo's can first slides by {most:.1f} mm",
-        ylim=(-1.5 * most, 1.5 * most),
-    )
     moved.set(
         ylabel="distance [mm]",
-        title=f"Then it slides further, and hops {lifted.max():.1f} mm high",
+        title=f"MuJoCo's can slides by {np.abs(slid[before]).max():.1f} mm, then hops "
+        f"{lifted.max():.1f} mm high",
     )
     share_time(panels)
+
+
+def _draw_slip_closer(axes: Axes, times: np.ndarray, slid: np.ndarray) -> None:
+    """Draw the slip [mm] before the hop into an inset at the top left."""
+    closer = axes.inset_axes((0.1, 0.48, 0.42, 0.4))
+    closer.plot(times, slid, color=COLOURS[1])
+    closer.set(xlim=(0.7, times[-1]), ylim=(-0.1, 0.8), xticks=(0.7, 0.75, 0.8), yticks=(0, 0.6))
+    closer.tick_params(labelsize=9)
+    closer.set_title("the slip before, seen closer [mm]", fontsize=9.5, color=COLOURS[1])
 
 
 def skids(ratios: np.ndarray, mu: float) -> np.ndarray:
@@ -347,7 +352,15 @@ def draw_lift_off(panels: Sequence[Axes]) -> None:
     lightest = math.degrees(hopping.slip(float(ratios[0]), MU))
     axes.axhline(90, **REFERENCE)
     axes.axvline(1 / 13, **REFERENCE)
-    note(axes, "Littlewood: 90°", (0.009, 90), (4, -9))
+    note(axes, "Littlewood: 90°", (0.0012, 90), (0, -9))
+    gap = int(np.argmax(np.isnan(skids(ratios, MU))))
+    note(
+        axes,
+        "A hoop just too heavy\nto skid here grips\nuntil it has passed 90°.",
+        (ratios[gap], 81),
+        (7, -3),
+        color=COLOURS[1],
+    )
     note(axes, "heavier hoops,\nM/m > 1/13,\nnever lift off", (1 / 13, 76), (7, 0))
     axes.set_xscale("log")
     axes.set(

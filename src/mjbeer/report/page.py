@@ -41,6 +41,8 @@ _HERE = pathlib.Path(__file__).parent
 _LIVE_OF_WHEEL = _HERE / "web" / "live.html"
 _LIVE_OF_CHECKOUT = _HERE.parents[2] / "docs" / "live.html"
 """The race to play, as it is installed from a wheel and in a checkout."""
+_ERROR_OF_CONTACT = "error-contact"
+"""The picture of a can that rolls by friction."""
 _ENGINES = "engines"
 """The picture of the can test."""
 _MAP = "stability-solref"
@@ -156,6 +158,8 @@ def plot_jobs(folder: pathlib.Path) -> list[PlotJob]:
         of_case = replace(benchmark, points=benchmark.of(case))
         draw = partial(work_precision.draw, of_case)
         plots.append(PlotJob(draw, folder / f"error-{case}", in_memory=True))
+    draw_contact = partial(work_precision.draw_contact, benchmark)
+    plots.append(PlotJob(draw_contact, folder / _ERROR_OF_CONTACT, in_memory=True))
     draw_engines = partial(engine_plot.draw, Results.load())
     plots.append(PlotJob(draw_engines, folder / _ENGINES, in_memory=True))
     for story in stories.STORIES:
@@ -212,7 +216,7 @@ def _errors(plots: Mapping[str, Picture]) -> _Errors:
     benchmark = Benchmark.load(SHIPPED)
     return _Errors(
         benchmark,
-        plots=[plots[f"error-{case}"] for case in benchmark.cases],
+        plots=[*(plots[f"error-{case}"] for case in benchmark.cases), plots[_ERROR_OF_CONTACT]],
         motions={case: CASES[case].story for case in (*benchmark.cases, *benchmark.long_cases)},
         tables=benchmark_tables.tables(benchmark),
         ratio_range=partial(benchmark_tables.ratio_range, benchmark),

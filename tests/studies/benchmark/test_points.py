@@ -64,10 +64,23 @@ def test_the_cheapest_point_is_the_fastest_that_keeps_an_error() -> None:
     assert points.cheapest(LADDER, 1e-6) is None
 
 
-def test_between_points_of_the_front_error_is_a_power_of_time() -> None:
+def test_between_points_of_a_curve_error_is_a_power_of_time() -> None:
     assert points.time_for(LADDER, 1e-4) == pytest.approx(math.sqrt(2 * 4))
     assert points.time_for(LADDER, 1e-1) == 1  # nothing is faster than the fastest
     assert math.isinf(points.time_for(LADDER, 1e-6))
+
+
+def test_a_time_is_not_interpolated_between_two_methods() -> None:
+    """Gauss-Jackson, whose coarsest run is exact to 1e-8 rad, is taken as it ran.
+
+    Between this run and that of DOP853 1e-4 rad would take 1.5^(1/2) s.
+    """
+    coarse = point(1, 1e-2, method="DOP853")
+    fine = point(3, 1e-6, method="DOP853")
+    exact = point(1.5, 1e-8, method="GaussJackson")
+    assert points.time_for([coarse, fine, exact], 1e-4) == pytest.approx(1.5)
+    assert points.times_in_rounds([coarse, fine, exact], 1e-4) == pytest.approx([1.5, 3])
+    assert points.time_for([coarse, fine, exact], 1e-2) == pytest.approx(1)
 
 
 def test_a_ratio_is_that_of_the_least_times_with_its_range_over_rounds() -> None:

@@ -8,7 +8,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from mjbeer.output.plots import Picture
-from mjbeer.studies.benchmark import benchmark_tables, work_precision
+from mjbeer.studies.benchmark import benchmark_tables, points, work_precision
 from mjbeer.studies.benchmark.other_tools import HEYOKA
 from mjbeer.studies.benchmark.points import SHIPPED, TOLERANCE, Benchmark, Point
 
@@ -91,3 +91,23 @@ def test_a_panel_and_the_title_say_how_much_longer_rk4_takes(stored: Benchmark) 
         assert f">{ratio} times as long<" in picture.svg
     ordered = sorted(in_table, key=float)
     assert f"RK4 takes {ordered[0]} to {ordered[-1]} times" in picture.title
+
+
+def test_the_contact_that_rk4_wins_is_excepted(stored: Benchmark) -> None:
+    """The arrow, the subtitle and the picture of its own have the ratio of the curves."""
+    found = stored.of("frozen")
+    dop853 = [point for point in found if (point.model, point.method) == ("contact", "DOP853")]
+    rk4 = [point for point in found if (point.model, point.method) == ("contact", "RK4")]
+    factor = points.time_for(dop853, 1e-6) / points.time_for(rk4, 1e-6)
+    assert factor > 2
+    whole = Picture("all")
+    alone = Picture("alone")
+
+    work_precision.draw(stored, whole)
+    work_precision.draw_contact(stored, alone)
+
+    assert whole.title.startswith("Without contacts ")
+    assert f"DOP853 takes {factor:.1f} times as long as RK4" in whole.subtitle
+    for picture in (whole, alone):
+        assert f">{factor:.1f} times as long<" in picture.svg
+        assert ">as RK4<" in picture.svg

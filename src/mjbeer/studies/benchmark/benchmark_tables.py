@@ -15,7 +15,15 @@ from mjbeer.studies.benchmark.other_tools import (
     ODEINT,
     WHOLE_CALL,
 )
-from mjbeer.studies.benchmark.points import Benchmark, Curve, Point, Ratio, milliseconds, spread
+from mjbeer.studies.benchmark.points import (
+    Benchmark,
+    Curve,
+    Point,
+    Ratio,
+    milliseconds,
+    spread,
+    two_digits,
+)
 
 COMPARED = (1e-3, 1e-6)
 """The errors [rad] at which run times are compared, as motions are usually needed to these."""
@@ -271,11 +279,3 @@ def convergence(study: Benchmark, case: str, step_ratio: int = 2) -> Table:
         rows.append((milliseconds(step), *cells))
     title = f"{case}: largest error [rad] by timestep, with the order of its convergence"
     return Table(title, ("timestep", *(curve.label for curve in curves)), rows)
-
-
-def two_digits(value: float) -> str:
-    """Return a positive number with two digits, such as 3.0."""
-    rounded = float(f"{value:.2g}")
-    if rounded >= 10:
-        return f"{rounded:.0f}"
-    return f"{rounded:#.2g}"

@@ -148,6 +148,8 @@ class Point:
 class Timing(NamedTuple):
     """A point as it was timed in one round."""
 
+    curve: Curve
+    """The curve that the point is on."""
     error: float
     """Largest error of phi and u/a over the run [rad]."""
     time: float
@@ -175,6 +177,14 @@ def spread(times: Sequence[float]) -> str:
     least = f"{1e3 * min(times):.3g}"
     largest = f"{1e3 * max(times):.3g}"
     return f"{least} ms" if least == largest else f"{least} to {largest} ms"
+
+
+def two_digits(value: float) -> str:
+    """Return a positive number with two digits, such as 3.0."""
+    rounded = float(f"{value:.2g}")
+    if rounded >= 10:
+        return f"{rounded:.0f}"
+    return f"{rounded:#.2g}"
 
 
 @dataclass
@@ -239,12 +249,22 @@ def cheapest(points: Iterable[Point], error: float) -> Point | None:
 
 
 def time_for(points: Iterable[Timed], error: float) -> float:
-    """Return the run time [s] for an `error` [rad], interpolated on the front as a power law.
+    """Return the least run time [s] for an `error` [rad] on the curves that the points are on.
 
-    It is infinite if no point reaches the error.
+    Between two runs of a curve it is interpolated as a power law, and never between two curves. A
+    curve that has no run with so large an error counts with its fastest run. The time is infinite
+    if no point reaches the error.
     """
+    curves: dict[Curve, list[Timed]] = {}
+    for point in points:
+        curves.setdefault(point.curve, []).append(point)
+    return min((_time_on_curve(curve, error) for curve in curves.values()), default=math.inf)
+
+
+def _time_on_curve(points: Iterable[Timed], error: float) -> float:
+    """Return the run time [s] for an `error` [rad] on one curve; infinite if it is not reached."""
     best = pareto_front(points)
-    if not best or best[-1].error > error:
+    if best[-1].error > error:
         return math.inf
     digits = [-math.log(point.error) for point in best]
     times = [math.log(point.time) for point in best]
@@ -253,9 +273,11 @@ def time_for(points: Iterable[Timed], error: float) -> float:
 
 def times_in_rounds(points: Sequence[Point], error: float) -> list[float]:
     """Return the run time [s] for an `error` [rad] in each round, as `time_for` has it."""
-    errors = [point.error for point in points]
-    rounds = zip(*(point.times for point in points), strict=False)
-    return [time_for(map(Timing, errors, times), error) for times in rounds]
+    rounds = min((len(point.times) for point in points), default=0)
+    return [
+        time_for([Timing(point.curve, point.error, point.times[k]) for point in points], error)
+        for k in range(rounds)
+    ]
 
 
 class Ratio(NamedTuple):

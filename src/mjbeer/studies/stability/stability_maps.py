@@ -30,7 +30,7 @@ from mjbeer.integrators.mujoco_steps import MuJoCoSteps
 from mjbeer.model.build import build, specify
 from mjbeer.model.joints import joint_addresses
 from mjbeer.model.setting import MUJOCO_INTEGRATORS, Integrator
-from mjbeer.output.plots import COLOURS, Picture, chart, name_below
+from mjbeer.output.plots import COLOURS, GREY, Picture, chart, name_below
 from mjbeer.output.terminal import Table
 from mjbeer.studies import predictions
 from mjbeer.studies.predictions import ACCURACY, GROWTH, SoftRow, spring
@@ -81,7 +81,7 @@ stiffness ("direct"), "gravity" without a constraint, or "damping" between can a
 """
 SHADES = {
     "explodes": "#E8A27C",
-    f"stable, off by more than {100 * ACCURACY:g} %": "#BFDFF2",
+    f"stable, off by more than {100 * ACCURACY:g} %": "#A9D3EC",
     f"stable, off by less than {100 * ACCURACY:g} %": COLOURS[0],
 }
 """The colours of the outcomes, which differ in hue and in brightness."""
@@ -170,7 +170,7 @@ FAMILIES = {
         -1.0,
         "{} τ",
         "A stiffer constraint needs a shorter timestep, except under discrete",
-        "A joint equality with refsafe off: timestep h against the time constant τ of solref.",
+        "A joint equality with refsafe off: time constant τ of solref against timestep h.",
     ),
     "direct": Family(
         (1e-5, 1.0),
@@ -179,7 +179,7 @@ FAMILIES = {
         0.5,
         "{}/√K",
         "A stiffer direct solref needs a shorter timestep, except under discrete",
-        "Timestep h against K of solref = (−K, −2√K), which refsafe does not touch.",
+        "K of solref = (−K, −2√K), which refsafe does not touch, against timestep h.",
     ),
     "gravity": Family(
         (1e-3, 10.0),
@@ -188,7 +188,7 @@ FAMILIES = {
         0.5,
         "{} √(1 m/g)",
         "Gravity limits the timestep of every integrator, the implicit ones as well",
-        "A can that swings without a constraint: timestep h against gravity g.",
+        "A can that swings without a constraint: gravity g against timestep h.",
     ),
     "damping": Family(
         (2.5e-4, 1.6e-2),
@@ -197,7 +197,7 @@ FAMILIES = {
         1.0,
         "{} N m s²/c",
         "Damping limits the timestep of explicit integrators alone",
-        "No constraint: timestep h against damping c, for half a metal can of beer. "
+        "No constraint: damping c against timestep h, for half a metal can of beer. "
         "Real liquids have at most 0.02 N m s.",
     ),
 }
@@ -479,9 +479,10 @@ def draw(path: pathlib.Path | Picture, maps: Sequence[StabilityMap]) -> None:
             axes.tick_params(labelleft=is_first)
         handles: list[Artist] = []
         for name, shade in SHADES.items():
-            handles.append(Patch(facecolor=shade, label=name))
+            # With an edge, as on a dark page a pale shade becomes as dark as the page.
+            handles.append(Patch(facecolor=shade, edgecolor=GREY, linewidth=0.8, label=name))
         handles.append(Line2D([], [], label="limit of stability, theory", **_THEORY))
-        handles.append(Line2D([], [], label="the same, measured", **_MEASURED))
+        handles.append(Line2D([], [], label="limit of stability, MuJoCo", **_MEASURED))
         name_below(panels, 3, handles)
 
 
@@ -548,6 +549,11 @@ def _draw_cells(axes: Axes, one_map: StabilityMap) -> None:
         rasterized=True,
     )
     axes.set(xscale="log", yscale="log")
+    first = math.ceil(math.log10(one_map.timesteps[0]))
+    last = math.floor(math.log10(one_map.timesteps[-1]))
+    decades = np.arange(first, last + 1)
+    # Of many decades every other one has a label, so that those of neighbours do not touch.
+    axes.set_xticks(10.0 ** (decades[1::2] if len(decades) > 4 else decades))
     axes.minorticks_off()
     axes.grid(visible=False)
 
