@@ -5,7 +5,7 @@ Run it as `python docs/figures/stability.py`.
 
 import pathlib
 
-from mjbeer.studies.stability import stability_maps
+from mjbeer.studies.stability import map_plots, stability_maps
 
-for name, draw in stability_maps.figures(stability_maps.load()).items():
+for name, draw in map_plots.figures(stability_maps.load()).items():
     draw(pathlib.Path(__file__).with_name(name))

@@ -169,7 +169,7 @@ def test_old_results_stay_if_a_command_is_interrupted_at_its_end(
         lambda _, path: files.write(path.with_suffix(".svg"), "a diagram"),
     )
     monkeypatch.setattr("mjbeer.studies.stability.stability_study.run", lambda *_: study)
-    monkeypatch.setattr("mjbeer.studies.stability.stability_maps.figures", lambda _: {})
+    monkeypatch.setattr("mjbeer.studies.stability.map_plots.figures", lambda _: {})
     words = [command, "--output", str(tmp_path)]
     assert main(words) == 0
     names = [path for path in tmp_path.iterdir() if not path.name.startswith(".")]

@@ -33,7 +33,7 @@ from mjbeer.studies.benchmark import benchmark_tables, work_precision
 from mjbeer.studies.benchmark.points import CASES, SHIPPED, Benchmark
 from mjbeer.studies.engines import engine_plot, engine_tables, findings
 from mjbeer.studies.engines.results import Results
-from mjbeer.studies.stability import stability_maps
+from mjbeer.studies.stability import map_plots, stability_maps
 from mjbeer.studies.study import machine
 from mjbeer.studies.validation.validate import Validation, validate
 
@@ -164,7 +164,7 @@ def plot_jobs(folder: pathlib.Path) -> list[PlotJob]:
     plots.append(PlotJob(draw_engines, folder / _ENGINES, in_memory=True))
     for story in stories.STORIES:
         plots.append(PlotJob(story.plot, folder / story.name, in_memory=True))
-    for name, draw in stability_maps.figures(stability_maps.load()).items():
+    for name, draw in map_plots.figures(stability_maps.load()).items():
         plots.append(PlotJob(draw, folder / name, in_memory=name == _MAP))
     return plots
 

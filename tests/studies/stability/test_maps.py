@@ -18,7 +18,7 @@ from mjbeer.model.setting import Integrator
 from mjbeer.output.plots import Picture
 from mjbeer.studies import predictions
 from mjbeer.studies.predictions import SoftRow
-from mjbeer.studies.stability import stability_maps, stability_study
+from mjbeer.studies.stability import map_plots, stability_maps, stability_study
 from mjbeer.studies.stability.stability_maps import PLANS, measure
 from mjbeer.studies.study import Study
 from mjbeer.theory.paper_scenes import frozen
@@ -174,14 +174,14 @@ def test_stored_maps_are_what_is_measured_now(plan: tuple[str, Integrator]) -> N
 def test_a_panel_says_which_timesteps_are_stable(name: str, limit: str) -> None:
     (shown,) = (one_map for one_map in stability_maps.load().maps if one_map.name == name)
 
-    assert stability_maps._limit(shown) == limit
+    assert map_plots._limit(shown) == limit
 
 
 def test_integrators_whose_runs_end_alike_share_a_panel() -> None:
     maps = [one_map for one_map in stability_maps.load().maps if one_map.family == "gravity"]
     picture = Picture("gravity")
 
-    stability_maps.draw(picture, maps)
+    map_plots.draw(picture, maps)
 
     titles = re.findall(r"<text[^>]*>([^<]*)</text>", picture.svg)
     assert "RK4" in titles

@@ -25,7 +25,7 @@ from mjbeer.model.setting import supported
 from mjbeer.output import files
 from mjbeer.output.terminal import Table
 from mjbeer.studies import study as studies
-from mjbeer.studies.stability import stability_maps
+from mjbeer.studies.stability import map_plots, stability_maps
 from mjbeer.studies.stability.judge import (
     JUDGES,
     REFUSED,
@@ -319,7 +319,7 @@ def write(study: Study, folder: pathlib.Path) -> None:
         verdict = f"**{len(study.failed)} did not come out as they must.**"
     lines = ["# mjbeer: stability", "", verdict, _READ]
     stored = stability_maps.load(folder / "maps.json")
-    for name, draw in stability_maps.figures(stored).items():
+    for name, draw in map_plots.figures(stored).items():
         draw(folder / name)
         family = stability_maps.FAMILIES[name.removeprefix("stability-")]
         lines += [f"![{name}]({name}.svg)", "", family.caption, ""]
