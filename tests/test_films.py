@@ -9,7 +9,7 @@ import pytest
 
 from mjbeer import Scene, exact, frozen, simulate
 from mjbeer.drawing.film import Film, MotionFilm
-from mjbeer.drawing.quantities import mean_forces
+from mjbeer.drawing.quantities import INTERVALS, mean_forces
 from mjbeer.drawing.race import Race
 from mjbeer.drawing.words import in_words
 from mjbeer.paper import stories
@@ -84,7 +84,9 @@ def test_the_race_of_liquids_ends_as_its_caption_says() -> None:
     place = honey.positions(np.array([finish["ice"]]))[0, 0]
     speed = honey.trajectory.scene.terminal_speed()
     carried = liquid_in("honey", **films.WITH_LIQUID).carried
-    numbers = [f"{time:.2f} s" for time in finish.values()]
+    numbers = [cans[name].shown(time) for name, time in finish.items()]
+    numbers = [number.replace("≈", "about") for number in numbers]
+    numbers += [cans[name].note.split()[2] for name in ("water", "olive oil")]
     numbers += [f"{100 * place:.0f} cm", f"{100 * speed:.1f} cm/s", f"{100 * carried:.0f} %"]
     for number in numbers:
         assert f" {number}" in FILMS["liquids"].caption
@@ -171,3 +173,32 @@ def test_a_film_lasts_from_two_to_twelve_seconds(name: str) -> None:
     plan = film.plan()
     assert 2 <= len(plan.times(FPS)) / FPS <= 12
     assert plan.start <= film.still <= plan.end
+
+
+@pytest.mark.slow
+def test_the_frozen_can_wins_by_its_start_on_top_as_the_caption_of_the_race_says() -> None:
+    """Without it, it would need the time of its mean acceleration."""
+    cans = {can.name: can for can in films.of_beer()}
+    steady = {
+        name: math.sqrt(2 * films.LENGTH / can.trajectory.scene.acceleration())
+        for name, can in cans.items()
+    }
+    partly = steady["beer frozen"]
+    full = cans["beer frozen, full"].finish(films.LENGTH)
+    assert f"need {partly:.2f} s, the full one {full:.2f} s" in FILMS["race"].caption
+    assert cans["beer frozen"].finish(films.LENGTH) < partly - 0.2
+
+
+@pytest.mark.slow
+def test_the_stories_tell_the_forces_that_their_films_show() -> None:
+    """Spinning beer presses with up to nearly four weights, and with a third of one on top.
+
+    A landing is a blow of more than eight weights, as a mean over a fiftieth of the motion.
+    """
+    (looping,) = motions(OF_STORIES["looping"])
+    (hopping,) = motions(OF_STORIES["slip-and-hop"])
+    spinning = mean_forces(looping).normal
+    assert 3.7 < spinning.max() < 4
+    assert spinning.min() == pytest.approx(1 / 3, abs=0.05)
+    assert 8 < mean_forces(hopping).normal.max() < 9
+    assert np.ptp(hopping.time) / INTERVALS == pytest.approx(0.011, abs=5e-4)

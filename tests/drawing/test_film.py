@@ -313,3 +313,26 @@ def test_a_motion_of_any_kind_can_be_drawn(motion: Callable[[], Trajectory]) -> 
     (picture,) = film.draw(middle, 320, 180)
 
     assert np.ptp(picture) > 200
+
+
+def test_a_film_holds_its_end() -> None:
+    """For 1.5 s of the video its time is the last one of the motion."""
+    film = MotionFilm(rocking, speed=0.5, hold=1.5).plan()
+
+    times = film.times(20)
+
+    moving = times[:20]
+    assert np.diff(moving) == pytest.approx(0.025)
+    assert times[20:].tolist() == [0.5] * 30
+
+
+@pytest.mark.draws
+def test_an_answer_is_given_at_the_end_in_place_of_notes(plates: list[tuple[str, ...]]) -> None:
+    """Frozen beer on top presses as it goes through below, and not at other times."""
+    run = partial(simulate, frozen(), 0.33, math.pi, tolerance=1e-9)
+    style = FilmStyle("a title", (), (), notes=("heavy",), answer="yes, it does")
+    film = MotionFilm(run, speed=1.0, style=style).plan()
+
+    list(film.draw(np.array([0.1, 0.32, 0.33]), 640, 360))
+
+    assert plates == [("the beer below presses the can down",), ("yes, it does",)]

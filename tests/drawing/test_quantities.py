@@ -60,6 +60,18 @@ def test_ahead_is_the_swing_of_eq_12() -> None:
     assert QUANTITIES["ahead"].values(motion) == pytest.approx(expected, abs=1e-9)
 
 
+def test_turns_are_counted_on_from_the_start() -> None:
+    """A load that loops has no jump in them."""
+    motion = exact(sliding(), SECOND, 1.0, 40.0)
+
+    turns = QUANTITIES["turns"].values(motion)
+
+    assert turns[0] == 0
+    assert math.tau * turns[-1] == pytest.approx(motion.phi[-1] - 1.0)
+    assert turns[-1] > 4
+    assert np.abs(np.diff(turns)).max() < 0.01
+
+
 def test_a_damped_can_is_behind_the_one_that_accelerates_evenly() -> None:
     """The even one has no damping and starts alike, so the damped one falls behind it."""
     free = sliding(can=Can.sheet_metal())

@@ -113,20 +113,6 @@ def test_no_value_of_a_film_is_beyond_its_axis() -> None:
     assert "up to" not in chart.title
 
 
-def test_friction_stays_between_its_limits() -> None:
-    """The mean friction of a can that slips is mu N, and never more."""
-    run = simulate(frozen(), 0.5, frozen().equilibrium(), rolling="contact", friction=0.1)
-
-    (chart,) = charts(run, ["friction"], mu=0.1)
-
-    up, down, friction, *_ = chart.lines
-    assert up.name == down.name == "μN and −μN"
-    assert friction.name == "MuJoCo"
-    assert (friction.values <= up.values * (1 + 1e-4)).all()
-    assert (friction.values >= down.values * (1 + 1e-4)).all()
-    assert friction.values[:50] == pytest.approx(up.values[:50], rel=1e-3)
-
-
 def test_the_equilibrium_is_a_line_of_the_chart_of_phi() -> None:
     run = exact(frozen(), np.linspace(0, 2, 401), 0.0)
 

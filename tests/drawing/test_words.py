@@ -11,7 +11,7 @@ def test_a_scene_in_words() -> None:
     can = Can.sheet_metal()
     water = liquid("water", math.radians(2), 0.75, can)
     assert in_words(water) == "three-quarters-full can of 8.57 g, water, incline 2°"
-    assert in_words(pendulum(0.0)) == "wheel with a pendulum, M = 200 g, m = 100 g, level ground"
+    assert in_words(pendulum(0.0)) == "wheel of 200 g with a bob of 100 g, level ground"
 
 
 def test_damping_in_words() -> None:

@@ -74,19 +74,22 @@ def test_a_rigid_can_takes_its_mass_times_the_acceleration() -> None:
 
 
 def test_of_the_two_moves_one_is_where_linear_theory_gives_numbers() -> None:
-    """As the film and its caption say: less than 0.1 R, and 0.28 R.
+    """As the film and its caption say: less than 0.1 R, and 0.28 R, in mm.
 
     A tenth more force, a tenth of ringing.
     """
     quick, gentle = (carry(CAN, duration=move.duration) for move in MOVES)
     high = np.abs(quick.rise).max()
     assert np.abs(gentle.rise).max() < QUANTITATIVE < high < INDICATIVE
-    assert f"{high:.2f} R" in Carry().caption
+    solid = TOTAL * np.abs(quick.acceleration).max()
+    for rise in (QUANTITATIVE, np.abs(gentle.rise).max(), high):
+        assert f" {1e3 * CAN.can.radius * rise:.1f} mm" in Carry().caption
+    for force in (solid, largest_force(quick)):
+        assert f" {force:.2f} N" in Carry().caption
     after_quick, after_gentle = (move.duration for move in MOVES)
     assert largest_force(gentle, after_gentle) < 0.02 * largest_force(gentle)
     ringing = largest_force(quick, after_quick) / largest_force(quick)
     assert ringing == pytest.approx(0.1, abs=0.02)
-    solid = TOTAL * np.abs(quick.acceleration).max()
     assert largest_force(quick) / solid == pytest.approx(1.1, abs=0.02)
 
 

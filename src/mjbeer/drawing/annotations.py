@@ -15,15 +15,15 @@ from mjbeer.model.looks import WALL
 from mjbeer.theory.can import RADIUS
 from mjbeer.theory.trajectory import Trajectory
 
-LONGEST = 2.5
+LONGEST = 3.2
 """Length of the longest arrow of a force, in radii; that of the weight is 1 at most. Only the blow
 of a landing would be longer."""
 _NO_BLOW = 97
 """Share of the time in which a can that may land feels no blow of a landing [%]."""
-_SHORTEST = 0.05
+_SHORTEST = 0.15
 """Length of the shortest arrow that is drawn, in radii."""
-_LETTER_DISTANCE = 0.4
-"""Least distance of a force's letter from where the can touches the incline, in radii."""
+_LETTER_ASIDE = 0.5
+"""Distance of a force's letter from the line of its arrow, in radii."""
 
 _RIM = (0.79, 0.12, 0.16)
 _CENTRE = (0.42, 0.21, 0.0)
@@ -138,8 +138,7 @@ class Annotations:
             length = min(normal, LONGEST)
             foot = self._foot(now)
             pen.arrow(foot, foot + np.array([0, length]), _NORMAL)
-            beside = np.array([0.36, max(length, _LETTER_DISTANCE) - 0.2])
-            pen.text(foot + beside, "N", _NORMAL)
+            pen.text(foot + np.array([_LETTER_ASIDE, length / 2]), "N", _NORMAL)
 
     def _draw_friction(self, pen: "_Pen", now: Position) -> None:
         friction = abs(self._arrow(self._forces.friction, now))
@@ -149,8 +148,8 @@ class Annotations:
             foot = self._foot(now)
             tail = foot - np.array([0, 0.12])
             pen.arrow(tail, tail + np.array([direction * length, 0]), _FRICTION)
-            letter = np.array([direction * max(length, _LETTER_DISTANCE), -0.54])
-            pen.text(foot + letter, "F", _FRICTION)
+            letter = np.array([direction * length / 2, -_LETTER_ASIDE])
+            pen.text(tail + letter, "F", _FRICTION)
 
     def _arrow(self, force: np.ndarray, now: Position) -> float:
         """Return the length of a force's arrow, with the force's sign."""

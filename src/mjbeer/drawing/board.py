@@ -43,7 +43,7 @@ class Board:
         self._draw_gravity(sheet, view)
         if self._scene.incline:
             self._draw_angle(sheet, view)
-        self._draw_distances(sheet, view)
+        self.draw_distances(sheet, view)
 
     def _draw_gravity(self, sheet: Sheet, view: View) -> None:
         """Draw gravity's arrow in the corner from which the incline falls away."""
@@ -75,7 +75,7 @@ class Board:
         height = reach * math.sin(tilt)
         sheet.boxes.append(Box(left, float(corner[1] - height), right, float(corner[1])))
 
-    def _draw_distances(self, sheet: Sheet, view: View) -> None:
+    def draw_distances(self, sheet: Sheet, view: View) -> None:
         """Write distances [m] below the board, with a tick at each, where there is room."""
         unit = sheet.unit
         size = scale(self._scene)

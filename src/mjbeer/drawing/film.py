@@ -17,6 +17,7 @@ from mjbeer.drawing.overlay import (
     HEADER,
     NOTE,
     STRIP,
+    draw_answer,
     draw_header,
     draw_note,
     draw_warning,
@@ -49,6 +50,8 @@ class RenderPlan:
     draw: Callable[[np.ndarray, int, int], Generator[np.ndarray]]
     """Draws the pictures at some times [s], of a width and a height [pixels]: arrays (height,
     width, 3), uint8."""
+    hold: float = 0.0
+    """How long the video shows the end, which stands still [s of the video]."""
 
     def times(self, fps: float) -> np.ndarray:
         """Return the times [s] of the pictures at `fps` frames per second of the video."""
@@ -61,7 +64,8 @@ class RenderPlan:
                 f"got {self.end - self.start:g} s at {fps:g} frames per second "
                 f"and a speed of {speed:g}, which are {count:.3g}"
             )
-        return self.start + speed / fps * np.arange(max(1, round(count)))
+        moving = self.start + speed / fps * np.arange(max(1, round(count)))
+        return np.append(moving, np.full(round(self.hold * fps), self.end))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -70,6 +74,8 @@ class Film(ABC):
 
     speed: float
     """Playback speed: 1 is real time."""
+    hold: float = 0.0
+    """How long the film shows its end, which stands still [s of the video]."""
     still: float = 0.0
     """Time of the picture that stands for the film [s]; 0 is a third of the way through."""
     caption: str = ""
@@ -102,7 +108,9 @@ class MotionFilm(Film):
             )
         style = self.style or FilmStyle.usual(motion)
         draw = partial(_pictures, motion, style, self.speed)
-        return RenderPlan(float(motion.time[0]), float(motion.time[-1]), self.speed, draw)
+        start = float(motion.time[0])
+        end = float(motion.time[-1])
+        return RenderPlan(start, end, self.speed, draw, self.hold)
 
 
 def _pictures(
@@ -119,7 +127,8 @@ def _pictures(
     has_charts = bool(style.strips) and len(trajectory.time) > 1 and width > _READABLE * sheet.unit
     below = round(STRIP * sheet.unit) if has_charts else 0
     top = round(HEADER * sheet.unit)
-    for_notes = round(NOTE * sheet.unit) if style.notes else 0
+    has_notes = bool(style.notes or style.answer) and not style.notes_aside
+    for_notes = round(NOTE * sheet.unit) if has_notes else 0
     scene_height = height - top - below
 
     # The camera keeps the can below the notes; the scene goes on behind them.
@@ -135,7 +144,7 @@ def _pictures(
     strip = None
     if has_charts:
         stages = [Stage(*stage) for stage in zip(notes.values(), GROUNDS, strict=False)]
-        shown = charts(trajectory, style.strips, "equilibrium" in style.marks, style.mu)
+        shown = charts(trajectory, style.strips, "equilibrium" in style.marks)
         strip = ChartStrip(shown, width, below, stages)
 
     with closing(Painter(display, (width, scene_height), camera.still)) as painter:
@@ -145,7 +154,10 @@ def _pictures(
             annotations.draw(sheet, view, time, now)
             board.draw(sheet, view)
             draw_header(sheet, style, trajectory, time, speed)
-            draw_note(sheet, notes, time, top)
+            if style.answer and time >= trajectory.time[-1]:
+                draw_answer(sheet, style.answer, top)
+            else:
+                draw_note(sheet, notes, time, top)
             draw_warning(sheet, doubts, top + for_notes)
             if strip is not None:
                 strip.draw(sheet, time, height - below)

@@ -12,22 +12,25 @@ from mjbeer.drawing.quantities import mean_forces
 from mjbeer.drawing.sheet import INK, Sheet
 from mjbeer.drawing.style import FilmStyle, scene_names
 from mjbeer.drawing.words import in_words
-from mjbeer.theory.scene import GRAVITY
 from mjbeer.theory.trajectory import Trajectory
 
 HEIGHT = 4.1
 """Height of the first two lines above a picture, in units of the sheet, as are all heights and
 distances here."""
-HEADER = 5.6
-"""Height with the third line, which says what the marks mean."""
+HEADER = 6.0
+"""Height with the third line, which says what the marks mean, and what else to know."""
 STRIP = 10
 """Height of the charts below a picture."""
 NOTE = 3
 """Height of a note, at the top of the scene."""
 _MARGIN = 1.2
 """Distance of texts from the edges of the sheet."""
+_LEGEND = 1.2
+"""Height of the letters of the third line, where there is room."""
 _LEGEND_GAPS = (0.5, 1.8)
 """Gaps behind the sign of a mark, and behind its meaning."""
+_LEAST = 0.55
+"""Height of the smallest letters of the first two lines."""
 _LETTER = 0.65
 """Width of a letter of a warning; the mean is a little less."""
 _WARNING_MARGINS = 4
@@ -48,8 +51,8 @@ class _TextLine(NamedTuple):
 
 
 _TITLE_LINE = _TextLine(row=1.5, size=1.45, colour=INK, bold=True)
-_SCENE_LINE = _TextLine(row=3.2, size=1.1, colour="#52606d", bold=False)
-_LEGEND_ROW = 4.7
+_SCENE_LINE = _TextLine(row=3.25, size=1.25, colour="#52606d", bold=False)
+_LEGEND_ROW = 5.0
 """Height of the middle of the third line below the upper edge."""
 
 
@@ -66,15 +69,28 @@ def draw_header(
     draw_title(sheet, style.title, in_words(trajectory.scene), time, speed, digits)
 
     body = scene_names(trajectory.scene).body
+    legends = [legend for mark in style.marks for legend in LEGENDS[mark]]
+    size = _LEGEND * unit
     row = _LEGEND_ROW * unit
+    end = sheet.width - _MARGIN * unit
+    limit = sheet.text((end, row), style.facts, size, anchor=(1, 0.5)).left - 2 * unit
+    meanings = [legend.meaning.format(body) for legend in legends]
+    while size > _LEAST * unit and _MARGIN * unit + _legend_width(sheet, meanings, size) > limit:
+        size -= 1
     column = _MARGIN * unit
     behind_sign, behind_meaning = _LEGEND_GAPS
-    for mark in style.marks:
-        for sign, colour, meaning in LEGENDS[mark]:
-            drawn = sheet.text((column, row), sign, 1.1 * unit, colour, bold=True)
-            column = drawn.right + behind_sign * unit
-            words = sheet.text((column, row), meaning.format(body), unit)
-            column = words.right + behind_meaning * unit
+    for sign, colour, meaning in legends:
+        drawn = sheet.text((column, row), sign, size, colour, bold=True)
+        column = drawn.right + behind_sign * unit
+        words = sheet.text((column, row), meaning.format(body), size)
+        column = words.right + behind_meaning * unit
+
+
+def _legend_width(sheet: Sheet, meanings: Sequence[str], size: float) -> float:
+    """Return how wide a third line with some meanings and their signs is [pixels]."""
+    sign = sheet.box((0, 0), "- -", size, bold=True).right
+    gaps = sum(_LEGEND_GAPS) * sheet.unit
+    return sum(sign + gaps + sheet.box((0, 0), meaning, size).right for meaning in meanings)
 
 
 def draw_title(
@@ -103,9 +119,10 @@ def _draw_line(sheet: Sheet, line: _TextLine, left: str, right: str) -> None:
     begin = _MARGIN * unit
     end = sheet.width - begin
     limit = sheet.text((end, row), right, size, line.colour, anchor=(1, 0.5)).left - 2 * unit
-    wanted = sheet.box((begin, 0), left, size, bold=line.bold).right
-    fits = max(0.5, min(1.0, limit / wanted))
-    sheet.text((begin, row), left, fits * size, line.colour, bold=line.bold)
+    # Letters have whole pixels, and their widths are no smooth function of their size.
+    while size > _LEAST * unit and sheet.box((begin, 0), left, size, bold=line.bold).right > limit:
+        size -= 1
+    sheet.text((begin, row), left, size, line.colour, bold=line.bold)
 
 
 class Note(NamedTuple):
@@ -115,19 +132,6 @@ class Note(NamedTuple):
     """What it says, with places for the names of {body} and {load}, and the largest {lift} [mm]."""
     holds: Callable[[Trajectory], np.ndarray]
     """Returns at which samples of a motion it does so."""
-
-
-_SLIPPING = 0.03
-"""Rate of slip from which on a can is said to slip, divided by sqrt(g a). A slower slip is not
-seen: while a stone falls from the axis to the incline the can slips by less than a twentieth of its
-radius."""
-
-
-def _slips(motion: Trajectory) -> np.ndarray:
-    """Return at which samples a can slips."""
-    gravity = motion.scene.gravity or GRAVITY  # a weightless can is judged as on earth
-    rate = np.abs(np.gradient(motion.slip, motion.time))
-    return rate > _SLIPPING * math.sqrt(gravity * motion.scene.can.radius)
 
 
 def _hesitates(motion: Trajectory) -> np.ndarray:
@@ -141,7 +145,6 @@ NOTES = {
         "its {load} pulls it up: it flies, up to {lift:.0f} mm high",
         lambda motion: motion.lift > 0.02 * motion.scene.can.radius,
     ),
-    "slips": Note("it slips: rolling needs more friction than μN", _slips),
     "heavy": Note(
         "the {load} below presses the {body} down",
         lambda motion: mean_forces(motion).normal > 1.8,
@@ -204,6 +207,12 @@ def draw_note(sheet: Sheet, notes: Mapping[str, Spans], time: float, top: int) -
             place = np.array([_MARGIN, NOTE / 2]) * sheet.unit + [0, top]
             sheet.plate(place, [words], INK, (0, 0.5), ground=ground)
             return
+
+
+def draw_answer(sheet: Sheet, words: str, top: int) -> None:
+    """Write what a motion has shown, below a row `top`."""
+    place = np.array([_MARGIN, NOTE / 2]) * sheet.unit + [0, top]
+    sheet.plate(place, [words], INK, (0, 0.5))
 
 
 def draw_warning(sheet: Sheet, doubts: Sequence[str], top: int) -> None:

@@ -89,6 +89,9 @@ def _mean_rate(time: np.ndarray, values: np.ndarray) -> np.ndarray:
 
 QUANTITIES = {
     "phi": Quantity("angle of the load, φ [°]", lambda motion: wrapped(motion.phi), least=10.0),
+    "turns": Quantity(
+        "turns of the load", lambda motion: (motion.phi - motion.phi[0]) / math.tau, least=0.1
+    ),
     "u": Quantity("distance [m]", lambda motion: motion.distance),
     "u_dot": Quantity("speed [m/s]", lambda motion: motion.u_dot),
     "ahead": Quantity(
@@ -101,15 +104,6 @@ QUANTITIES = {
         low=-1.0,
         high=10.0,  # the blow of a landing goes beyond
     ),
-    "friction": Quantity(
-        "friction, F [weights]",
-        lambda motion: mean_forces(motion).friction,
-        low=-2.0,
-        high=2.0,
-    ),
     "lift": Quantity("height of flight [mm]", lambda motion: 1e3 * motion.lift),
-    "slip": Quantity(
-        "slid instead of rolled [mm]", lambda motion: 1e3 * (motion.slip - motion.slip[0])
-    ),
 }
 """What a chart can show, by name."""

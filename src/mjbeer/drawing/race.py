@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
+from mjbeer.drawing.board import Board
 from mjbeer.drawing.camera import Edges, View, in_space, scale
 from mjbeer.drawing.film import Film, RenderPlan
 from mjbeer.drawing.overlay import HEIGHT, draw_title, draw_warning
@@ -28,10 +29,12 @@ _EYE = np.array([0.0, -math.cos(0.6), math.sin(0.6)])
 """Direction of the eye: in front of the board, and so high above it that no can hides another."""
 _BEFORE = 0.3
 """How much of the incline is seen before the start, for the names, in lengths of the race."""
-_CLOSE_UPS = 11.2
+_CLOSE_UPS = 12.4
 """Height of the row of close-ups below the picture, in units of the sheet."""
-_TEXTS = 3.5
-"""Height of the two lines above a close-up, in units."""
+_TEXTS = 4.7
+"""Height of the three lines above a close-up, in units."""
+_DISTANCES = RADIUS
+"""Height of the distances below the board, as drawn [m]."""
 _GAP = 0.4
 """Distance between two close-ups, in units."""
 _SEEN = np.array([-1.22, 1.12])
@@ -57,6 +60,15 @@ class Runner:
     """Colour of what is in it; None keeps that of beer or ice."""
     note: str = ""
     """What else to know about it, such as "μ = 0.35"."""
+
+    @property
+    def rough(self) -> bool:
+        """Whether the model of its liquid gives no more than an order of magnitude."""
+        return bool(self.trajectory.liquid_warnings)
+
+    def shown(self, time: float) -> str:
+        """Return a time [s] in words, with two digits if it is rough."""
+        return f"≈ {time:.2g} s" if self.rough else f"{time:.2f} s"
 
     def finish(self, length: float) -> float:
         """Return the time [s] at which the can has come a `length` [m] down the incline.
@@ -89,7 +101,8 @@ class Result(NamedTuple):
 class Race(Film):
     """A film of up to five cans of one radius that are let go together on one incline.
 
-    At the finish each can is held, and its time is written below its name. Below the picture there
+    At the finish each can is held, and its time is written below its name. A time that the model of
+    a liquid cannot tell well is written with two digits. Below the picture there
     is a close-up of each can, where there is room. With `centres` the film is no race: the centres
     of mass of the loads start at one line, and are marked and joined.
 
@@ -113,7 +126,8 @@ class Race(Film):
     def plan(self) -> RenderPlan:
         runners = self.runners()
         _check_equal_terms(runners)
-        return RenderPlan(0.0, self.duration, self.speed, partial(self._pictures, runners))
+        draw = partial(self._pictures, runners)
+        return RenderPlan(0.0, self.duration, self.speed, draw, self.hold)
 
     def results(self, runners: Sequence[Runner]) -> list[Result]:
         """Return what each can's plate says from its finish on.
@@ -128,9 +142,10 @@ class Race(Film):
             if finish < self.duration:
                 quicker = sum(other < time for other in shown)
                 shared = "shared " if shown.count(time) > 1 else ""
-                results.append(Result(finish, f"{shared}{_ORDINALS[quicker]}: {time:.2f} s"))
+                place = f"{shared}{_ORDINALS[quicker]}"
+                results.append(Result(finish, f"{place}: {runner.shown(finish)}"))
             elif math.isfinite(finish):
-                results.append(Result(self.duration - _LATE, f"needs {time:.2f} s"))
+                results.append(Result(self.duration - _LATE, f"needs {runner.shown(finish)}"))
             else:
                 end = runner.trajectory.time[-1]
                 results.append(Result(self.duration - _LATE, f"not there after {end:.2f} s"))
@@ -144,7 +159,8 @@ class Race(Film):
         display = self._display(runners)
         has_close_ups = not self.centres and width > _READABLE * sheet.unit
         below = round(_CLOSE_UPS * sheet.unit) if has_close_ups else 0
-        view = self._view(display, (width, height - top - below), top)
+        board = Board(display)
+        view = self._view(display, board, (width, height - top - below), top)
         positions = np.stack([self._positions(runner, times) for runner in runners], axis=1)
         if self.centres:  # the centres of mass start at one line; in a race the axes do
             positions[..., 0] += [runner.trajectory.u[0] for runner in runners]
@@ -164,16 +180,19 @@ class Race(Film):
                 sheet.blank(height - below, height)
                 for lane, (runner, result) in enumerate(zip(runners, results, strict=True)):
                     place = self._plate_place(display, view, lane, now[lane, 0])
-                    said = result.words if time >= result.time else runner.note
+                    said = [runner.note] if runner.note else []
+                    if time >= result.time:
+                        said.append(result.words)
                     lines = [runner.name]
                     if has_close_ups:
                         panel = _panel(sheet, lane, len(runners), height - below)
                         _draw_close_up(painter, display, lane, now[lane], panel, sheet)
-                        _name(sheet, panel, runner, said, is_result=time >= result.time)
-                    elif said:
-                        lines.append(said)
+                        _name(sheet, panel, runner, result.words if time >= result.time else "")
+                    else:
+                        lines += said
                     sheet.plate(place, lines, runner.colour, (1, 0.5))
                 if self.centres:
+                    board.draw_distances(sheet, view)
                     _join_centres(sheet, view, display, now)
                 draw_warning(sheet, doubts, top)
                 yield sheet.picture()
@@ -193,14 +212,21 @@ class Race(Film):
         display.paint([runner.colour for runner in runners], [runner.load for runner in runners])
         return display
 
-    def _view(self, display: Display, pixels: tuple[int, int], top: int) -> View:
-        """Return the view of all lanes from before the start to the finish."""
+    def _view(self, display: Display, board: Board, pixels: tuple[int, int], top: int) -> View:
+        """Return the view of all lanes from before the start to the finish.
+
+        With `centres` there is room for distances below the board.
+        """
         outlines = [
             display.outline(lane, np.array([u, 0.0, 0.0, 0.0]))
             for lane in range(len(display.lanes))
             for u in (-_BEFORE * self.length, self.length)
         ]
         points = np.reshape(outlines, (-1, 3))
+        if self.centres:
+            along = np.array([0.0, self.length]) * scale(display.scenes[0])
+            below = board.under - _DISTANCES
+            points = np.vstack([points, in_space(display.scenes[0], along, below, board.front)])
         distance = _EYE_DISTANCE * self.length * scale(display.scenes[0])
         eye = points.mean(axis=0) + distance * _EYE
         return View.towards(eye, points, pixels, top, margin=0.03)
@@ -209,7 +235,7 @@ class Race(Film):
         """Return what holds for all cans."""
         facts = [f"incline {in_degrees(display.scenes[0].incline)}"]
         if not self.centres:
-            facts = [f"{self.length:g} m", *facts, "each can is held at the finish"]
+            facts = [f"{self.length:g} m", *facts]
         if self.facts:
             facts.append(self.facts)
         return ", ".join(facts)
@@ -253,13 +279,14 @@ def _draw_close_up(
     sheet.composite(small.part(0, pixels[1]), panel.left, panel.upper)
 
 
-def _name(sheet: Sheet, panel: Edges, runner: Runner, said: str, is_result: bool) -> None:
-    """Write a can's name, and what is said of it, above its close-up."""
-    unit = sheet.unit
-    place = np.array([panel.left, panel.upper - 0.7 * _TEXTS * unit])
-    sheet.text(place, runner.name, 1.15 * unit, runner.colour, bold=True)
-    place = np.array([panel.left, panel.upper - 0.26 * _TEXTS * unit])
-    sheet.text(place, said, 1.15 * unit, bold=is_result)
+def _name(sheet: Sheet, panel: Edges, runner: Runner, result: str) -> None:
+    """Write a can's name, its note and its result above its close-up."""
+    row = _TEXTS * sheet.unit / 3
+    size = 1.2 * sheet.unit
+    lowest = panel.upper - 0.6 * row
+    sheet.text((panel.left, lowest - 2 * row), runner.name, size, runner.colour, bold=True)
+    sheet.text((panel.left, lowest - row), runner.note, size)
+    sheet.text((panel.left, lowest), result, size, bold=True)
 
 
 def _check_equal_terms(runners: Sequence[Runner]) -> None:
@@ -298,4 +325,4 @@ def _join_centres(sheet: Sheet, view: View, display: Display, positions: np.ndar
     for place in places:
         sheet.disc(place, 0.5 * sheet.unit, (0.1, 0.1, 0.1))
     beside = places[0] + sheet.unit * np.array([1.0, 1.2])
-    sheet.text(beside, "centre of mass", 1.1 * sheet.unit, halo=True)
+    sheet.text(beside, "centre of mass", 1.2 * sheet.unit, halo=True)

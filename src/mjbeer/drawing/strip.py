@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.transforms import BboxBase, Transform
 
-from mjbeer.drawing.quantities import INTERVALS, QUANTITIES, mean_forces
+from mjbeer.drawing.quantities import QUANTITIES
 from mjbeer.drawing.sheet import INK, Colour, Sheet
 from mjbeer.exceptions import MjbeerError
 from mjbeer.output.plots import COLOURS, STYLE
@@ -100,12 +100,10 @@ def charts(
     trajectory: Trajectory,
     names: Sequence[str],
     equilibrium: bool = False,
-    mu: float | None = None,
 ) -> list[Chart]:
     """Return charts of the quantities of these names in QUANTITIES, with theory's lines.
 
-    The chart of phi can show its `equilibrium`, and that of friction how much a friction
-    coefficient `mu` allows.
+    The chart of phi can show its `equilibrium`.
     """
     theory = _theory(trajectory)
     shown = [_chart(trajectory, theory, name) for name in names]
@@ -114,11 +112,6 @@ def charts(
         line = Line("equilibrium", trajectory.time[[0, -1]], rest, thin=True)
         place = names.index("phi")
         shown[place] = replace(shown[place], lines=[*shown[place].lines, line])
-    if mu is not None and "friction" in names:
-        most = mu * mean_forces(trajectory).normal
-        limits = [Line("μN and −μN", trajectory.time, sign * most, COLOURS[1]) for sign in (1, -1)]
-        place = names.index("friction")
-        shown[place] = replace(shown[place], lines=[*limits, *shown[place].lines])
     return shown
 
 
@@ -131,10 +124,8 @@ def _chart(trajectory: Trajectory, theory: Trajectory | None, name: str) -> Char
         rolls = _rolls(theory)
         lines.append(Line("theory", theory.time[rolls], quantity.values(theory)[rolls]))
     title = quantity.title
-    if name in ("normal", "friction") and trajectory.rolling == "contact":
-        window = np.ptp(trajectory.time) / INTERVALS
-        letter = name[0].upper()
-        title = f"{letter} [weights], {1e3 * window:.2g} ms means"
+    if name == "normal" and trajectory.rolling == "contact":
+        title += ", smoothed"
     if values.max() > quantity.high:
         title += f", up to {values.max():.0f}"
     return Chart(title, lines, quantity.low, quantity.high, quantity.least)

@@ -58,8 +58,12 @@ class FilmStyle:
     """How the camera moves."""
     notes: tuple[str, ...] = ()
     """What is said while it happens; the charts show when each of them holds."""
-    mu: float | None = None
-    """Friction coefficient whose limits are in the chart of the friction."""
+    facts: str = ""
+    """What else to know of the motion, such as how it is started; it stands at the right."""
+    notes_aside: bool = False
+    """Whether what moves passes beside the notes, which then need no room above it."""
+    answer: str = ""
+    """What is said at the end of the motion, in place of a note."""
     measured: np.ndarray | None = None
     """Times [s] and places u [m] of a filmed axis, shape (points, 2)."""
 

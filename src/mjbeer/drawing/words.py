@@ -40,9 +40,11 @@ def _load_in_words(scene: Scene) -> list[str]:
 
 def _point_load_in_words(scene: Scene) -> list[str]:
     """Return the words for a load without size: a pendulum's bob, or a weight on a hoop."""
-    pendulum = scene.attachment == "sliding"
-    body = "wheel with a pendulum" if pendulum else "hoop with a weight on its rim"
-    return [body, f"M = {1e3 * scene.can.mass:.3g} g", f"m = {1e3 * scene.load.mass:.3g} g"]
+    body = f"{1e3 * scene.can.mass:.3g} g"
+    load = f"{1e3 * scene.load.mass:.3g} g"
+    if scene.attachment == "sliding":
+        return [f"wheel of {body} with a bob of {load}"]
+    return [f"hoop of {body} with {load} on its rim"]
 
 
 def _can_in_words(scene: Scene) -> str:

@@ -86,9 +86,10 @@ STORIES = (
         Race(
             "One beer swings: the centres of mass stay abreast",
             _let_go,
-            length=0.36,
+            length=0.40,
             duration=0.65,
             speed=0.1,
+            hold=1.0,
             still=0.2,
             centres=True,
         ),
@@ -113,7 +114,9 @@ STORIES = (
         "other. In truth there is a second ripple, twice in a turn, which remains however fast the "
         "beer spins. Fast beer lifts its can off the incline: a free can stays on it up to 47 "
         "rad/s at the bottom. The corrected formula is of first order, and only near the truth "
-        "when the beer is slow.",
+        "when the beer is slow. In the film the beer was set spinning at 45 rad/s, seven turns a "
+        "second, before it starts. Going through below, it presses the can down with nearly four "
+        "weights; on top it takes all but a third of the weight off the incline.",
         PlotSize(2, 1, 6, 5.6),
         story_plots.draw_looping,
         MotionFilm(
@@ -121,29 +124,32 @@ STORIES = (
             speed=0.1,
             style=FilmStyle(
                 "Beer that loops in its can all but lifts it",
-                ("normal", "phi"),
-                ("phi", "normal"),
+                ("normal", "turns"),
+                ("normal",),
                 "pan",
                 notes=("light", "heavy"),
+                facts="beer set spinning at 45 rad/s",
             ),
         ),
     ),
     Story(
         "rocking",
-        "Frozen beer rocks about its equilibrium and stays",
+        "Frozen beer rocks about its equilibrium and does not roll off",
         f"{in_words(frozen())}; let go at φ = 0",
         "A can with frozen beer is let go at φ = 0. It rocks about its equilibrium and does not "
-        "roll off. Footnote 8's equation as printed has ½ a b in place of a b, and gives another "
-        "swing.",
+        "roll off. Nothing takes energy from it here, and so it rocks for ever; a real can comes "
+        "to rest in the equilibrium. Footnote 8's equation as printed has ½ a b in place of a b, "
+        "and gives another swing.",
         PlotSize(2, 1, 6, 5.6),
         story_plots.draw_rocking,
         MotionFilm(
             story_plots.ROCKING,
             speed=0.5,
             style=FilmStyle(
-                "Frozen beer, let go below: it rocks and stays",
+                "Frozen beer, let go below, rocks and does not roll off",
                 ("phi", "u"),
-                ("phi", "paths", "equilibrium"),
+                ("phi", "equilibrium"),
+                facts="without losses it rocks for ever",
             ),
         ),
     ),
@@ -160,26 +166,28 @@ STORIES = (
     ),
     Story(
         "slip-and-hop",
-        "With μ = 1 the can slips before it hops",
+        "With μ = 1 the can slips a little before it hops",
         f"{in_words(frozen())}; let go at φ = 180°",
         "A half-full can is let go with its frozen beer on top, on an incline with μ = 1. Rolling "
         "needs more and more friction. At 0.72 s it needs more than there is, and the can slips by "
-        "less than a millimetre. At 0.83 s the can begins to slip far, and then it hops, 7 mm "
-        "high. The film begins after 0.68 s, 0.4 m below the start; its chart has the friction F "
-        "between the limits μN and −μN.",
+        "less than a millimetre, which no film can show. At 0.83 s the can begins to slip far, and "
+        "then it hops, 7 mm high. The film begins 0.45 s after the can was let go: each time the "
+        "beer goes through below it presses the can down harder, until, going up, it takes the "
+        "can along. The landing is a blow of more than eight weights (mean of 11 ms).",
         PlotSize(2, 1, 6, 5.6),
         story_plots.draw_slip_and_hop,
         MotionFilm(
             story_plots.PARTING,
-            speed=0.04,
+            speed=0.06,
+            hold=1.0,
             still=0.9,
             style=FilmStyle(
-                "With μ = 1, frozen beer slips before it hops",
-                ("friction", "slip"),
-                ("paths", "normal", "friction"),
+                "Frozen beer rolls faster and faster, until its can hops",
+                ("normal", "lift"),
+                ("paths", "normal"),
                 "pan",
-                ("flies", "slips"),
-                mu=story_plots.FRICTION,
+                ("flies", "heavy", "light"),
+                facts="let go on top at t = 0, μ = 1",
             ),
         ),
     ),

@@ -42,7 +42,7 @@ ROCKING = partial(simulate, frozen(), 2.0, 0.0, integrator="DOP853")
 LIFT_OFF = partial(
     simulate, frozen(), 1.0, math.pi, rolling="contact", timestep=2e-4, friction=FRICTION
 )
-PARTING = partial(LIFT_OFF, times=np.linspace(0.68, 1.0, 1601))
+PARTING = partial(LIFT_OFF, times=np.arange(2250, 4901) * 2e-4)
 _PRINTED: dict[str, Any] = {"color": COLOURS[1], "linestyle": "--"}
 """The style of an equation that the paper prints wrong."""
 _JUMP = 3.0

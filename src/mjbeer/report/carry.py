@@ -119,13 +119,16 @@ class Carry(Film):
     title: str = "Two grippers carry beer: which of them feels it slosh?"
     speed: float = 0.5
     still: float = 0.25
+    hold: float = 1.0
     caption: str = (
         "Two cans, half full of beer, are carried 0.4 m, in 1 s and in 1.6 s. The charts show "
-        "how much each gripper's force differs from that on a rigid can of the same mass, and how "
-        "high the surface stands at the wall ahead. In the gentle move the surface rises by less "
-        "than 0.1 R, where linear theory gives numbers, and the beer hardly rings after the stop. "
-        "In the quick move it rises by 0.28 R, which is beyond linear theory: that the force is "
-        "larger by a tenth, and that a tenth of it rings on after the stop, is then an estimate."
+        "each gripper's force on its can, the part of it that sloshing adds to what a rigid can "
+        "needs, and how high the surface stands at the wall ahead. The black rings are 3.3 mm "
+        "above and below the surface at rest, a tenth of the radius: between them the theory of "
+        "small waves holds, on which the model rests. In the gentle move the surface rises by 3.0 "
+        "mm, and the beer hardly sloshes after the stop. In the quick move it rises by 9.4 mm, "
+        "far beyond the rings: that the force is then 0.55 N in place of 0.50 N, a tenth more, "
+        "and that a tenth of it goes on after the stop, is an estimate."
     )
 
     def plan(self) -> RenderPlan:
@@ -133,7 +136,8 @@ class Carry(Film):
         runs = [
             carry(can, duration=move.duration, after=_DURATION - move.duration) for move in MOVES
         ]
-        return RenderPlan(0.0, _DURATION, self.speed, partial(self._draw, can, runs))
+        draw = partial(self._draw, can, runs)
+        return RenderPlan(0.0, _DURATION, self.speed, draw, self.hold)
 
     def _draw(
         self, can: Standing, runs: list[Carried], times: np.ndarray, width: int, height: int
@@ -151,7 +155,7 @@ class Carry(Film):
             sheet.put(empty, top)
             for lane in reversed(range(len(MOVES))):  # the nearest comes last
                 _draw_move(pen, can, lane, runs[lane], time)
-            words = "half a 12-oz can of beer, carried 0.4 m"
+            words = f"half a 12-oz can of beer, carried {_DISTANCE:g} m"
             draw_title(sheet, self.title, words, time, self.speed)
             for lane in range(len(MOVES)):
                 _draw_close_up(pen, can, lane, runs[lane], time)
@@ -168,21 +172,26 @@ def _view(pixels: tuple[int, int], top: int) -> View:
 
 
 def _charts(can: Standing, runs: list[Carried]) -> list[Chart]:
-    """Return charts of what the slosh adds to the forces, and of the surface."""
+    """Return charts of the forces, of what the slosh adds to them, and of the surface."""
     mass = can.mass + can.can.mass
     end = runs[0].time[[0, -1]]
+    radius = 1e3 * can.can.radius  # [mm]
+    limit = radius * QUANTITATIVE
+    forces = []
     added = []
     rises = [
-        Line("limit of linear theory", end, np.full(2, limit), thin=True)
-        for limit in (-QUANTITATIVE, QUANTITATIVE)
+        Line(f"black rings, ±{limit:.1f} mm", end, np.full(2, height), thin=True)
+        for height in (-limit, limit)
     ]
     for move, run in zip(MOVES, runs, strict=True):
         name = f"moved in {move.duration:g} s"
+        forces.append(Line(name, run.time, run.force, move.colour))
         added.append(Line(name, run.time, run.force - mass * run.acceleration, move.colour))
-        rises.append(Line(name, run.time, run.rise, move.colour))
+        rises.append(Line(name, run.time, radius * run.rise, move.colour))
     return [
-        Chart("force less that on a rigid can [N]", added),
-        Chart("surface at the wall ahead [R]", rises),
+        Chart("force on the can [N]", forces),
+        Chart("of it, by sloshing [N]", added),
+        Chart("surface ahead [mm]", rises),
     ]
 
 
@@ -220,7 +229,7 @@ def _draw_move(pen: _Pen, can: Standing, lane: int, run: Carried, time: float) -
 
 
 def _draw_close_up(pen: _Pen, can: Standing, lane: int, run: Carried, time: float) -> None:
-    """Draw the surface of a can at a `time` [s] at the left edge, with what it has risen so far."""
+    """Draw the surface of a can at a `time` [s] at the left edge, with its highest rise."""
     sheet = pen.sheet
     unit = sheet.unit
     width, height = np.round(_CLOSE_UP * unit).astype(int)
@@ -233,14 +242,21 @@ def _draw_close_up(pen: _Pen, can: Standing, lane: int, run: Carried, time: floa
     near = pen._replace(sheet=small, view=view)
     _draw_can(near, can, np.zeros(3), float(np.interp(time, run.time, run.rise)))
 
-    highest = np.abs(run.rise[run.time <= time]).max()
-    trust = "beyond linear theory" if highest > QUANTITATIVE else "within 0.1 R"
+    highest = np.abs(run.rise).max()
+    is_small = highest <= QUANTITATIVE
+    where = "between" if is_small else "beyond"
+    trust = "the numbers hold" if is_small else "an estimate only"
     move = MOVES[lane]
     row = len(MOVES) - 1 - lane  # the far one is above
     left = 0.6 * unit
     top = (HEIGHT + 0.6) * unit + row * (height + 1.6 * unit)
     sheet.composite(small.part(0, int(height)), round(left), round(top))
-    lines = [f"in {move.duration:g} s", f"rises by {highest:.2f} R:", trust]
+    lines = [
+        f"in {move.duration:g} s",
+        f"rises by up to {1e3 * can.can.radius * highest:.1f} mm,",
+        f"{where} the black rings:",
+        trust,
+    ]
     sheet.plate(np.array([left + width, top]), lines, move.colour, (0, 0))
 
 

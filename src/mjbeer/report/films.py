@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
+import numpy as np
+
 from mjbeer.drawing.film import Film, MotionFilm
 from mjbeer.drawing.race import Race, Runner
 from mjbeer.drawing.style import FilmStyle
@@ -14,7 +16,7 @@ from mjbeer.paper import stories
 from mjbeer.report.carry import Carry
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import Can
-from mjbeer.theory.liquid import liquid
+from mjbeer.theory.liquid import centrifugal_ratio, liquid
 from mjbeer.theory.paper_scenes import frozen, hoop, pendulum, sliding
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
@@ -54,6 +56,12 @@ _SMALL = (640, 360, 25)
 """Width and height [pixels] and pictures per second in a quick report."""
 
 
+def _rough_from(motion: Trajectory) -> str:
+    """Return from when on a liquid is too fast to stay at the bottom, in words."""
+    is_beyond = np.asarray(centrifugal_ratio(motion.scene, motion.u_dot)) > 1
+    return f"rough from {motion.time[is_beyond][0]:.2f} s on"
+
+
 def of_beer() -> Sequence[Runner]:
     """Return the cans of the race of beer that slides, frozen beer, and none."""
     slides = sliding(_GENTLE, can=METAL, fill=_FILL)
@@ -72,7 +80,7 @@ def of_beer() -> Sequence[Runner]:
             "beer frozen",
             _race(is_frozen, 180),
             colour=(0.15, 0.42, 0.72),
-            note="¾ full, upside down",
+            note="¾ full, beer on top",
         ),
         Runner("beer frozen, full", _race(is_full, 0), colour=(0.40, 0.25, 0.60)),
         Runner(
@@ -95,24 +103,29 @@ def of_liquids() -> Sequence[Runner]:
     honey = liquid("honey", **WITH_LIQUID)
     ice = frozen(_STEEPER, _FILL, METAL, _ICE)
     # Each is simulated until it is out of the picture.
+    of_water = _race_from_level(water, 1.6)
+    of_oil = _race_from_level(oil, 2.1)
     return [
         Runner(
             "water",
-            _race_from_level(water, 1.6),
+            of_water,
             colour=(0.08, 0.40, 0.72),
             load=(0.36, 0.66, 0.93),
+            note=_rough_from(of_water),
         ),
         Runner(
             "olive oil",
-            _race_from_level(oil, 2.1),
+            of_oil,
             colour=(0.42, 0.45, 0.05),
             load=(0.78, 0.76, 0.20),
+            note=_rough_from(of_oil),
         ),
         Runner(
             "honey",
             _race_from_level(honey, 24.5),
             colour=(0.72, 0.38, 0.0),
             load=(0.88, 0.52, 0.05),
+            note="rough",
         ),
         Runner(
             "ice",
@@ -134,34 +147,38 @@ FILMS: dict[str, Film] = {
         length=LENGTH,
         duration=2.3,
         speed=0.25,
+        hold=1.5,
         still=1.4,
         caption="Four equal cans race over one metre on an incline of 5 degrees, and each is held "
         "at the finish; below is the near end of each. The can whose beer slides wins: its beer "
         "swings to and fro by 30 degrees but does not turn with the can, so that almost nothing "
         "is spent on turning. Frozen beer must turn with its can: the full can is as slow as a "
         "solid cylinder, with two thirds of the winner's acceleration. The frozen can that is "
-        "three quarters full starts with its beer on top, for else it would stay where it is; its "
-        "lead of two centimetres is gone before half-way. The empty can comes last, since most of "
-        "its mass is in its wall.",
+        "three quarters full starts with its beer on top, for else it would stay where it is, and "
+        "this is why it beats the full one: its load falls from the top, which gives it speed at "
+        "once. Without that start it would need 1.85 s, the full one 1.88 s. At first it even "
+        "leads, by two centimetres, but not for half of the way. The empty can comes last, since "
+        "most of its mass is in its wall.",
     ),
     "liquids": Race(
         "Water, oil, honey or ice: which can wins, and which is last?",
         of_liquids,
         length=LENGTH,
         duration=2.72,
-        facts="all cans ¾ full, each liquid one lump",
+        facts="¾ full; rough: beyond the model's range",
         speed=1 / 3,
+        hold=1.5,
         still=2.2,
         caption="Predict first, then look. Four equal cans, three quarters full, are let go "
         "together on an incline of 7.1°, each with its surface level; below is the near end of "
-        "each. Water hardly rubs against its can, and ice turns with it. Water wins after 1.33 s, "
-        "and oil follows after 1.63 s. The ice hesitates with its load nearly on top, rolls over, "
-        "and finishes after 2.32 s. The honey is last: when the ice arrives it has come 15 cm, "
-        "and it needs 21.47 s. It neither slides freely nor turns with its can, and as it rubs it "
-        "takes all that the incline gives: it creeps with 4.5 cm/s. Each liquid is one lump here, "
-        "and the times are this model's: real water and oil are soon so fast that they need not "
-        "stay at the bottom, and while real honey creeps, the wall can carry 30 % of it round. "
-        "With half or twice the viscosity honey is last as well.",
+        "each. Water hardly rubs against its can, and wins after about 1.3 s; oil follows after "
+        "about 1.6 s. Ice turns with its can: it hesitates with its load nearly on top, rolls "
+        "over, and finishes after 2.32 s. Honey needs about 21 s: it rubs, which takes all that "
+        "the incline gives, and creeps with about 4.5 cm/s. When the ice arrives it has come 15 "
+        "cm. The model takes each liquid for one body that keeps its shape. Real water does not "
+        "after 0.48 s, nor oil after 0.59 s: the can then turns so fast that it can carry them "
+        "all the way round. The wall can carry 30 % of real honey round, too. So the times with ≈ "
+        "are rough; honey is last with half or twice its viscosity as well.",
     ),
     "sliding": MotionFilm(
         partial(simulate, sliding(can=METAL), 1.2, math.radians(60), tolerance=1e-9),
@@ -175,17 +192,21 @@ FILMS: dict[str, Film] = {
     "frozen": MotionFilm(
         partial(simulate, frozen(), 0.82, math.pi, tolerance=1e-9),
         speed=0.2,
-        caption="Frozen beer is let go on top, and rolls down ever faster, in jerks. N and F are "
-        "the forces of the incline on the can, which start where they act. Whenever the beer goes "
-        "through below, N is more than twice the weight, and in between it is less. The film ends "
-        "just before the can would leave the incline.",
+        caption="Frozen beer is let go on top, and rolls down ever faster, in jerks. N is the "
+        "force with which the incline presses on the can. Whenever the beer goes "
+        "through below, N is more than twice the weight, and in between it is less. From 0.834 s "
+        "on the incline would have to pull the can for it to keep rolling: there it lifts off, and "
+        "the film ends just before. The film slip-and-hop shows what comes then.",
+        hold=2.0,
         still=0.55,
         style=FilmStyle(
             "Frozen beer rolls down in jerks",
             strips=("normal", "u"),
-            marks=("paths", "normal", "friction"),
+            marks=("paths", "normal"),
             camera="pan",
             notes=("heavy", "light"),
+            facts="let go on top",
+            answer="next, at 0.83 s, the beer lifts its can off: see the film slip-and-hop",
         ),
     ),
     "pendulum": MotionFilm(
@@ -195,23 +216,30 @@ FILMS: dict[str, Film] = {
         "hesitates whenever its bob is uphill, and runs ahead whenever it is downhill, for "
         "nothing but their weight drives them together.",
         still=0.4,
-        style=_hesitating("A pendulum in a wheel: does the wheel roll evenly?"),
+        hold=2.0,
+        style=_hesitating(
+            "A pendulum in a wheel: does the wheel roll evenly?",
+            answer="No: whenever the bob swings uphill, the wheel hesitates",
+        ),
     ),
     "hoop": MotionFilm(
         HOP,
         speed=0.06,
         caption="A hoop of 60 g with a bar of 200 g on its rim is pushed on ice (μ = 0.01), with "
         "the bar in front, and turns at 1700° per second. As the bar goes through below, the hoop "
-        "presses on the ice with 9.4 times the weight of both. After 0.10 s the bar comes up "
-        "behind and lifts the hoop, which flies 34 mm high: about its radius. The charts shade "
-        "when the bar presses, when it pulls, and when the hoop flies. The film ends just before "
-        "the landing.",
+        "presses on the ice with 9.4 times the weight of both (mean of 5 ms). After "
+        "0.10 s the bar comes up behind and lifts the hoop, which flies 34 mm high: about its "
+        "radius. The charts shade when the bar presses, when it pulls, and when the hoop flies. "
+        "The film ends just before the landing.",
         still=0.2,
         style=FilmStyle(
-            "Why does a hoop fly? The bar on its rim lifts it",
+            "Why does a hoop on ice fly? The bar on its rim lifts it",
             strips=("lift", "normal"),
             marks=("paths", "normal"),
+            camera="fixed",
             notes=("flies", "heavy", "light"),
+            notes_aside=True,
+            facts="set turning at 1700°/s",
         ),
     ),
     "carry": Carry(),

@@ -30,7 +30,7 @@ from mjbeer.paper import stories
 from mjbeer.paper.claim import Claim
 from mjbeer.report import films
 from mjbeer.studies.benchmark import benchmark_tables, work_precision
-from mjbeer.studies.benchmark.points import SHIPPED, Benchmark
+from mjbeer.studies.benchmark.points import CASES, SHIPPED, Benchmark
 from mjbeer.studies.engines import engine_plot, engine_tables, findings
 from mjbeer.studies.engines.results import Results
 from mjbeer.studies.stability import map_plots, stability_maps
@@ -86,6 +86,8 @@ class _Errors(NamedTuple):
 
     benchmark: Benchmark
     plots: list[Picture]
+    motions: Mapping[str, str]
+    """What each motion is, in words, by its name."""
     tables: list[Table]
     ratio_range: Callable[[str, float], str]
     """Tells how many times as long a setting takes as the best, at an error [rad]."""
@@ -215,6 +217,7 @@ def _errors(plots: Mapping[str, Picture]) -> _Errors:
     return _Errors(
         benchmark,
         plots=[*(plots[f"error-{case}"] for case in benchmark.cases), plots[_ERROR_OF_CONTACT]],
+        motions={case: CASES[case].story for case in (*benchmark.cases, *benchmark.long_cases)},
         tables=benchmark_tables.tables(benchmark),
         ratio_range=partial(benchmark_tables.ratio_range, benchmark),
     )

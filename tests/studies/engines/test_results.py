@@ -228,6 +228,19 @@ def test_an_engine_has_its_first_default_and_its_closest_setting_in_the_main_tab
         assert {way for way in shown if way.engine == name} == expected
 
 
+def test_at_the_defaults_an_engine_has_its_closest_shape() -> None:
+    least: dict[str, float] = {}
+    for way in engine_tables.ways(RESULTS):
+        if way.setting == "default" and way.engine != "SciPy":
+            error = engine_tables.worst_error(RESULTS, way)
+            least[way.engine] = min(error, least.get(way.engine, math.inf))
+    found = engine_tables.closest_defaults(RESULTS)
+    assert {
+        engine: engine_tables.worst_error(RESULTS, way) for engine, way in found.items()
+    } == least
+    assert found["PhysX (SAPIEN)"].shape == "capsule"
+
+
 def test_without_an_engine_there_are_tables_but_no_findings() -> None:
     rows = [stored for stored in RESULTS.rows if stored.engine != "Drake"]
     known = [engine for engine in RESULTS.engines if engine.name != "Drake"]
@@ -250,6 +263,12 @@ def test_the_answer_is_not_given_for_other_results() -> None:
     ]
     with pytest.raises(ValueError, match="the results are others"):
         findings.answer(Results(RESULTS.engines, {}, close))
+    far = [
+        replace(stored, phi_error=1.0, u_error=1.0) if stored.engine == "Pymunk" else stored
+        for stored in RESULTS.rows
+    ]
+    with pytest.raises(ValueError, match="the results are others"):
+        findings.answer(Results(RESULTS.engines, {}, far))
 
 
 def test_results_come_back_from_their_file() -> None:

@@ -104,9 +104,10 @@ def ratios(study: Benchmark, errors: Sequence[float]) -> Table:
     def best_cell(best: Sequence[Point], error: float) -> str:
         return spread(points.times_in_rounds(best, error))
 
+    at = " and ".join(f"{error:.0e}" for error in errors)
     title = (
         "Run time divided by that of mjbeer's best reduced setting, "
-        "at equal error (below 1 is faster)"
+        f"at an equal error of {at} rad (below 1 is faster)"
     )
     return _comparison(study, errors, title, best_cell, cell)
 

@@ -217,7 +217,7 @@ def _of_timesteps(results: Results) -> list[str]:
     return [
         "**Where a contact does not slide, the integrator's order remains**: the errors fall as "
         "about the first power of the timestep, as those of semi-implicit Euler do. "
-        f"They fall as {falls}.",
+        f"They fall as {falls} {_ALL_SETTINGS}.",
         "**Four engines in single precision do not gain from 0.1 ms**: their errors of roll at 1 "
         f"and at 0.1 ms are {floors} {_ALL_SETTINGS}. We do not know the cause. In "
         "Rapier it is not the digits of the position: the errors stay as they are if the can "
