@@ -94,11 +94,11 @@ def random_cases(count: int) -> list[Case]:
     cases = []
     for k in range(count):
         setting = {
-            "incline": math.radians(random.uniform(0, 30)) * (k % 10 > 0),
+            "incline": math.radians(random.uniform(0, 30)) * (k % 10 > 0),  # every tenth is level
             "fill": random.uniform(0.05, 1.0),
             "inside": INSIDE[k % 7],
             "radius": random.uniform(0.015, 0.04 if INSIDE[k % 7] in LIQUIDS else 0.06),
-            "canMass": random.uniform(0.002, 0.06) * (k % 3 > 0),
+            "canMass": random.uniform(0.002, 0.06) * (k % 3 > 0),  # every third is massless
             "phi0": random.uniform(-math.pi, math.pi),
         }
         starts = {1: -setting["incline"], 2: math.radians(30), 3: math.pi}
@@ -326,7 +326,8 @@ def test_a_bad_track_gets_a_sentence(table: str, sentence: str) -> None:
     "text", [*TABLES.values(), *(text for text, _ in THOUSANDS.values()), SYNTHETIC]
 )
 def test_it_reads_a_track_as_read_track_does(text: str, tmp_path: pathlib.Path) -> None:
-    (path := tmp_path / "can.txt").write_text(text, encoding="utf-8")
+    path = tmp_path / "can.txt"
+    path.write_text(text, encoding="utf-8")
     track = read_track(path)
     time, distance = np.transpose(script(f"readTrack({json.dumps(text)})", TRACK)["distance"])
     assert time == pytest.approx(track.time, rel=1e-12)
@@ -390,10 +391,12 @@ document.title = `${space.defaultPrevented} ${running}`;
 
 def shown(folder: pathlib.Path, code: str, link: str = "") -> str:
     """What Chromium shows of the page after a script has run."""
-    if not (chromium := shutil.which("chromium") or shutil.which("google-chrome")):
+    chromium = shutil.which("chromium") or shutil.which("google-chrome")
+    if not chromium:
         pytest.skip("no Chromium: `apt-get install chromium` brings one")
+    page = folder / "live.html"
     text = TEXT.replace("</body>", f"<script>{code}</script></body>")
-    (page := folder / "live.html").write_text(text, encoding="utf-8")
+    page.write_text(text, encoding="utf-8")
     address = page.as_uri() + link
     command = [chromium, "--headless", "--no-sandbox", "--disable-gpu", "--dump-dom", address]
     return subprocess.run(command, capture_output=True, text=True, check=True, timeout=120).stdout

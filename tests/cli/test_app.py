@@ -32,7 +32,10 @@ def test_simulate_writes_the_trajectory(
     target = tmp_path / "motion[red][" / "c].csv"
     target.parent.mkdir()
     start = ["--phi0", "57", "--phi-dot0", "-2e1"]
-    assert main(["simulate", name, *start, "--duration", "0.1", f"--output={target}"]) == 0
+
+    status = main(["simulate", name, *start, "--duration", "0.1", f"--output={target}"])
+
+    assert status == 0
     run = simulate(SCENES[name], 0.1, math.radians(57), math.radians(-20))
     assert target.read_text() == csv(run)
     out, err = capsys.readouterr()
@@ -114,8 +117,11 @@ def test_what_is_not_allowed_is_one_line_and_exit_status_2(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    assert main(words.split()) == 2
+
+    status = main(words.split())
+
     out, err = capsys.readouterr()
+    assert status == 2
     assert err.startswith(f"mjbeer: {message}")
     assert err.count("\n") == 1
     assert out == ""
@@ -178,7 +184,10 @@ def test_what_a_liquid_uses_is_told_and_what_speaks_against_it(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     options = "--fill 0.7 --phi0 20 --duration 1 --json"
-    assert main(["simulate", "liquid", "--liquid", "olive oil", *options.split()]) == 0
+
+    status = main(["simulate", "liquid", "--liquid", "olive oil", *options.split()])
+
+    assert status == 0
     out, err = capsys.readouterr()
     assumed = liquid_in("olive oil", fill=0.7)
     assert err.startswith(f"{assumed}\nnote: olive oil as one lump is an order of magnitude only")
@@ -190,6 +199,9 @@ def test_what_a_liquid_uses_is_told_and_what_speaks_against_it(
 
 def test_an_equation_that_is_not_solved_is_told(capsys: pytest.CaptureFixture[str]) -> None:
     words = "simulate frozen --duration 0.5 --integrator Euler --timestep 4e-3"
-    assert main(words.split()) == 0
+
+    status = main(words.split())
+
+    assert status == 0
     message = "equations not solved: energy or momentum drifts as with an error of "
     assert capsys.readouterr().err.startswith(message)

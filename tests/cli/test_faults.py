@@ -40,7 +40,9 @@ def test_a_full_disk_leaves_the_old_file(tmp_path: pathlib.Path) -> None:
     assert main(words) == 0
     target.write_text("old")
     env = os.environ | {"PYTHONDONTWRITEBYTECODE": "1"}
+
     status, _, err = run(words, env=env, preexec_fn=little_disk)
+
     assert (status, err) == (2, f"mjbeer: cannot write {target}: File too large\n")
     assert target.read_text() == "old"
     assert os.listdir(tmp_path) == ["motion.csv"]

@@ -43,7 +43,10 @@ def test_the_file_has_what_python_gives(
 ) -> None:
     path = tmp_path / f"map{ending}"
     options = "--incline 5:60:2 --fill 0.3,0.5 --phi0 20 --duration 0.8 --quantity period"
-    assert main(["sweep", "frozen", *options.split(), "--output", str(path)]) == 0
+
+    status = main(["sweep", "frozen", *options.split(), "--output", str(path)])
+
+    assert status == 0
     out, err = capsys.readouterr()
     assert out == "2: all went well; 2: a quantity has no value\n"
     assert f"wrote {path}" in err
@@ -80,8 +83,12 @@ def test_a_file_of_another_sweep_is_refused(
     tmp_path: pathlib.Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     words = ["--fill", "0.3,0.5", "--output", str(tmp_path / "map.nc"), "--duration"]
-    assert main(["sweep", "frozen", *words, "0.1"]) == main(["sweep", "frozen", *words, "0.1"]) == 0
-    assert main(["sweep", "frozen", *words, "0.2"]) == 2
+    assert main(["sweep", "frozen", *words, "0.1"]) == 0
+    assert main(["sweep", "frozen", *words, "0.1"]) == 0  # the same sweep is not
+
+    status = main(["sweep", "frozen", *words, "0.2"])
+
+    assert status == 2
     assert "map.nc has another sweep, whose " in capsys.readouterr().err
 
 

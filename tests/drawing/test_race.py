@@ -169,7 +169,8 @@ def test_each_can_has_a_close_up_and_is_held_at_the_finish() -> None:
     before, after, later = film.plan().draw(finish + np.array([-0.1, 0.001, 0.05]), 640, 360)
 
     close_ups = slice(290, 355)
-    of_quick, of_slow = slice(0, 320), slice(320, 640)
+    of_quick = slice(0, 320)
+    of_slow = slice(320, 640)
     assert np.ptp(after[close_ups, of_quick]) > 200
     assert np.array_equal(after[close_ups, of_quick], later[close_ups, of_quick])
     assert not np.array_equal(before[close_ups, of_quick], after[close_ups, of_quick])
@@ -231,6 +232,6 @@ def test_the_cans_of_a_comparison_roll_downhill_to_the_right() -> None:
 
     columns = []
     for picture in pictures:
-        red = picture[..., 0] > 2.0 * picture[..., 1]
-        columns.append(np.median(np.nonzero(red)[1]))
+        is_red = picture[..., 0] > 2.0 * picture[..., 1]
+        columns.append(np.median(np.nonzero(is_red)[1]))
     assert np.diff(columns).min() > 15

@@ -1,5 +1,4 @@
-"""Exported MJCF: MuJoCo 4 loads it without mjbeer, it is the model that mjbeer builds, and moves as
-the paper says.
+"""Exported MJCF: MuJoCo 4 loads it without mjbeer, as the model that mjbeer builds.
 
 Portable exports are loaded by MuJoCo 3.3, MJX, mujoco_warp and dm_control too. The tests with these
 install them in build/others, and run only where MJBEER_OTHERS names the tools:
@@ -124,8 +123,9 @@ def distance(one: Coordinates, other: Coordinates, scene: Scene) -> float:
 
 
 def assert_same(shown: mujoco.MjModel, path: pathlib.Path) -> None:
-    """An export has the digits of the model that is shown, and all is at the same places, also
-    after a move.
+    """Check that an export has the numbers of the model that is shown, to its own digits.
+
+    All is at the same places, also after a move.
 
     MuJoCo leaves out a number that is within 2e-16 of its default, as a force of 1e-16 N.
     """
@@ -391,9 +391,8 @@ def test_sensors_have_the_values_of_the_letters(name: str, rolling: Rolling) -> 
     assert found.keys() == expected.keys()
     scale = max(abs(value) for value in expected.values())
     # A can in contact starts 1e-9 radii deep.
-    assert found == pytest.approx(
-        expected, rel=ROUNDING, abs=(1e-8 if rolling == "contact" else ROUNDING) * scale
-    )
+    allowed = 1e-8 if rolling == "contact" else ROUNDING
+    assert found == pytest.approx(expected, rel=ROUNDING, abs=allowed * scale)
     assert build(scene, rolling).nsensor == 0
 
 

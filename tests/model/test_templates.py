@@ -151,8 +151,10 @@ def test_what_a_viewer_opens_is_made_from_mechanics_and_looks(name: str) -> None
 
 
 def test_the_readme_lists_the_parameters_and_what_can_be_named() -> None:
-    """Element, attribute and files of each parameter are what mjbeer writes; and all names are
-    there."""
+    """Its table has the element, the attribute and the files of each number that mjbeer writes.
+
+    Its lists have all names of joints, cameras, sensors and keyframes.
+    """
     sections = (OWN / "README.md").read_text().split("\n## ")
     told = {text.partition("\n")[0]: text for text in sections}
     table = re.findall(
@@ -183,8 +185,10 @@ def test_the_readme_lists_the_parameters_and_what_can_be_named() -> None:
 
 
 def fits(name: str, files: str) -> bool:
-    """Whether a mechanics file is among those that a row of the table names: all, or with all words
-    of one part."""
+    """Return whether a row of the table is about a mechanics file.
+
+    The row names "all", or parts, and the name of the file has all words of one part.
+    """
     return files == "all" or any(
         all(word in name for word in part.split()) for part in files.split(", ")
     )
@@ -198,7 +202,11 @@ def fits(name: str, files: str) -> bool:
 def test_a_file_that_is_missing_or_not_whole_is_named(
     copy: pathlib.Path, file: str, content: str | None
 ) -> None:
-    (copy / file).unlink() if content is None else (copy / file).write_text(content)
+    if content is None:
+        (copy / file).unlink()
+    else:
+        (copy / file).write_text(content)
+
     with pytest.raises(TemplateError, match=rf"{pathlib.Path(file).name} is not readable MJCF: "):
         build(frozen(), visuals=True)
 
@@ -387,9 +395,11 @@ def test_an_equality_as_usually_written_hardly_rolls() -> None:
     """In metres and with MuJoCo's own softness, on the roll-down, which is 89 radii long."""
     text = (OWN / "mechanics" / "frozen_equality.xml").read_text()
     soft = re.sub(r'solref="0.0005 1"\s+solimp="0.9999 0.9999"', "", text.replace(ANGLES, METRES))
-    assert (
-        1.0 < slip_from(soft.replace('diagexact="enable"', ""), "roll_down") / METAL.radius < 10.0
-    )
+    usual = soft.replace('diagexact="enable"', "")
+
+    slip_in_radii = slip_from(usual, "roll_down") / METAL.radius
+
+    assert 1.0 < slip_in_radii < 10.0
 
 
 @pytest.mark.parametrize(
@@ -482,14 +492,14 @@ LATE = {
 
 @pytest.mark.parametrize("name", LATE)
 def test_an_edit_that_acts_late_is_an_error(name: str, copy: pathlib.Path) -> None:
-    """Though the file moves as theory says from where a run starts: a short one is as exact as
-    without the edit."""
+    """A short run, in which it does not act, is no error."""
     for change in LATE[name]:
         edit(copy, change.file, change.old, change.new)
-    _, rolling = shown_by(change.file)
+    edited = LATE[name][0].file  # all edits of a name are in one file
+    _, rolling = shown_by(edited)
     scene = sliding(can=METAL, damping=1e-4)
     simulate(scene, 0.02, 1.0, rolling=rolling)
-    path = re.escape(str(copy / f"{change.file}.xml"))
+    path = re.escape(str(copy / f"{edited}.xml"))
     message = f"^{path} ({WRONG}|lets geoms touch other).* in a state of this run$"
     for times in (None, [0.1, 3.0]):
         with pytest.raises(TemplateError, match=message):

@@ -48,7 +48,10 @@ def test_the_command(
     """Films that cannot be drawn are named."""
     stubs.draw(monkeypatch)
     monkeypatch.setattr(opengl, "problem", lambda: problem)
-    assert main(["paper", *options, "--output", str(tmp_path)]) == 0
+
+    status = main(["paper", *options, "--output", str(tmp_path)])
+
+    assert status == 0
     text = (tmp_path / "stories.md").read_text()
     err = capsys.readouterr().err
     filmed = bool(options) and not problem

@@ -24,7 +24,9 @@ SCENES = {
 def test_it_agrees_with_theory(name: str) -> None:
     """The accelerations do, and to 1e-6 the friction that makes a can roll."""
     scene, rolling = SCENES[name]
+
     q = watch(scene, 1.2, 0.5, rolling=rolling, samples=11)
+
     u_ddot, phi_ddot = accelerations(scene, q.phi, q.phi_dot, q.u_dot)
     if name == "frozen, reduced":
         # The reduced model of a frozen can turns on the spot.

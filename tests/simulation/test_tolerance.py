@@ -1,5 +1,7 @@
-"""tolerance: the true error is below it at every sample, the estimate bounds it, and what cannot be
-met is an error."""
+"""Runs to a tolerance: their true errors are below it, and so are their estimates.
+
+A tolerance that cannot be met is an error.
+"""
 
 import math
 from collections.abc import Callable
@@ -27,9 +29,9 @@ from tests.support.scenes import METAL, error, scenes
 
 pytestmark = pytest.mark.slow
 
-# Rounding of the start alone, amplified by more than this, is a thousandth of the tolerance, and
-# that of all steps may be all of it: a motion beside a separatrix, of which nobody knows that many
-# digits.
+# Largest condition number of a motion, divided by its tolerance [rad]. Beyond it the rounding of
+# the start, 1e-16, grows to a thousandth of the tolerance, and that of all steps may use it up.
+# Such a motion is beside a separatrix, and nobody knows so many of its digits.
 WORST_CONDITION = 1e13
 NEARBY = 1e-8
 
@@ -61,8 +63,10 @@ def assert_kept(run: Run, tolerance: float) -> None:
 
 
 def assert_kept_or_refused(case: Case, *, easily_kept: float) -> None:
-    """A run keeps to its tolerance unless it is refused, and to one that is easy to keep to it
-    does: what refused everything would be no better."""
+    """Check that a run keeps to its tolerance or is refused, and that it keeps to an easy one.
+
+    Without the second, code that refuses everything would pass.
+    """
     try:
         run = case.run()
     except ToleranceError:
@@ -91,7 +95,9 @@ def test_true_error_is_below_the_tolerance(
     truth = exact(scene, times, phi0, phi_dot0)
     nearby = exact(scene, times, phi0 + NEARBY, phi_dot0 + NEARBY / unit)
     angle = np.maximum(1, np.maximum.accumulate(np.abs(truth.phi - truth.phi[0])))
-    assume(np.max(np.abs(nearby.phi - truth.phi) / angle) / NEARBY < WORST_CONDITION * tolerance)
+    condition = np.max(np.abs(nearby.phi - truth.phi) / angle) / NEARBY
+    assume(condition < WORST_CONDITION * tolerance)
+
     run = simulate(scene, duration, phi0, phi_dot0, tolerance=tolerance, times=times)
     assert_kept(run, tolerance)
 
@@ -269,12 +275,12 @@ def test_damped_motions_keep_to_the_tolerance(
     slip = scene.damping_law.rate_at(scene.mass * scene.gravity * scene.can.radius)
     stiffest = float(relaxation_rate(scene, np.linspace(0, math.pi, 91), slip).max())
     assume(stiffest * times[-1] < 2e3)  # DOP853 takes steps as short as that
+    u0, _ = scene.initial_axis(phi0, 0.0)
+
     run = simulate(scene, times[-1], phi0, swing * unit, tolerance=tolerance, times=times)
+
     truth = exact(scene, times, phi0, swing * unit)
-    assert (
-        largest_error(run, truth, scene.can.radius, (phi0, scene.initial_axis(phi0, 0.0)[0]))
-        <= tolerance
-    )
+    assert largest_error(run, truth, scene.can.radius, (phi0, u0)) <= tolerance
     assert run.error_estimate <= tolerance
     assert run.integrator == "DOP853"
 
@@ -344,8 +350,10 @@ def test_a_second_run_estimates_the_error_of_implicit_methods(
 
 def test_the_forces_of_all_steps_are_those_of_the_motion() -> None:
     """Within the long steps of DOP853 too, where speed and slip are those of polynomials."""
-    run = simulate(MIXED, 1, 1.0, 5.0, tolerance=1e-9)
     truth = exact(MIXED, np.linspace(0, 1, 1001), 1.0, 5.0)
+
+    run = simulate(MIXED, 1, 1.0, 5.0, tolerance=1e-9)
+
     # An eighth of a step of 1/30 s does not meet the extremes, flat as they are, by (25/s /
     # 240/s)^2 / 2.
     assert run.record.lowest_normal == pytest.approx(truth.forces.normal.min(), rel=5e-3)

@@ -1,5 +1,4 @@
-"""Damped motions against Taylor series, closed forms and limits; steady rolling and the modes about
-it."""
+"""Damped motions against Taylor series, closed forms and limits; steady rolling and its modes."""
 
 import json
 import math
@@ -162,8 +161,11 @@ def test_motion_seen_from_behind_and_without_damping() -> None:
 
 @pytest.mark.slow
 def test_unstable_balance() -> None:
-    """On level ground the top is an equilibrium; beside it rounding decides, and there is an error
-    before it changes phi by 1e-4, and not long before: here it grows tenfold in 0.13 s."""
+    """On level ground the top is an equilibrium, and beside it rounding decides.
+
+    Theory refuses a time before rounding has changed phi by 1e-4, but not long before: rounding
+    grows tenfold in 0.13 s.
+    """
     scene = sliding(0.0, damping=1e-3)
     assert (exact(scene, [0.0, 9.0], 3 * math.pi).phi == 3 * math.pi).all()
     with pytest.raises(
@@ -187,8 +189,10 @@ def test_unstable_balance() -> None:
 @pytest.mark.slow
 @taylor.NEEDED
 def test_an_axis_that_hardly_moves_keeps_its_digits_under_a_fast_load() -> None:
-    """Its speed changes sign in most turns of a load that is a hundred times as fast, whose steps a
-    corner must end."""
+    """The load is a hundred times as fast, and the axis changes its direction in most turns of it.
+
+    There the drag has a corner, at which a step must end.
+    """
     can = Can(0.16774472, 0.60388099, 0.2195832373, 0.00550709956)
     scene = Scene(can, Load(52.892768, 0.0014955071, 0.7378145), 1.39933904, drag=730.309)
     time = np.array([7.7e-4, 3.29e-3])
@@ -379,8 +383,10 @@ def test_modes_are_eigenvalues(scene: Scene, power: float, drag: float, steep: f
 
 
 def test_modes_of_weak_and_strong_damping() -> None:
-    """Both limits are known. A root is good to some eps, of which its real part of 1e-7 of it keeps
-    eight digits."""
+    """Both limits are known.
+
+    A root is good to some eps of its size. A real part that is 1e-7 of that keeps eight digits.
+    """
     c = 1e4
     scene = sliding(can=METAL, damping=c)
     a = scene.can.radius

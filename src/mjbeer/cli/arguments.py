@@ -362,7 +362,9 @@ def start_arguments(given: Namespace) -> dict[str, Any]:
     if given.scene == "standing":
         return {}
     degrees = np.round(np.degrees(given.phi0), 9)
-    if degrees.ndim == 0 and abs(degrees) < 10 and round(degrees, 2) != degrees:
+    is_single = degrees.ndim == 0
+    # Nobody writes so small an angle in degrees with three decimals or more.
+    if is_single and abs(degrees) < 10 and round(degrees, 2) != degrees:
         as_radians = math.degrees(degrees)
         say(
             f"note: phi0 = {degrees:g} is taken as degrees; "

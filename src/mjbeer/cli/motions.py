@@ -189,13 +189,14 @@ def simulate(given: Namespace) -> None:
             "standard output takes one of them: the JSON, or the CSV of --output -"
         )
     to_file = given.output and not to_output
-    with files.atomic_write(given.output) if to_file else nullcontext() as temporary:
+    writing = files.atomic_write(given.output) if to_file else nullcontext()
+    with writing as temporary:
         with terminal.status("simulating"):
             summary = Summary(run_of(given), given.friction)
         if summary.run.timestep is not None:
             second = "estimating the error by a second run, which takes up to three times as long"
             with terminal.status(second):
-                _ = summary.run.error_estimate
+                _ = summary.run.error_estimate  # it is computed here, and kept for the text
         if temporary:
             temporary.write_text(csv(summary.run), encoding="utf-8")
     if temporary:
@@ -327,7 +328,8 @@ def fit(given: Namespace) -> None:
     # A warning about a guess says nothing about the fit.
     with warnings.catch_warnings(action="ignore", category=LiquidWarning):
         guess = scene(given)
-    with files.atomic_write(output) if output else nullcontext() as temporary:
+    writing = files.atomic_write(output) if output else nullcontext()
+    with writing as temporary:
         result = fit(track, guess, given.free or ["incline"], dict(given.known), phi0, given.bend)
         if given.json:
             content = {

@@ -102,9 +102,9 @@ class Race(Film):
     """A film of up to five cans of one radius that are let go together on one incline.
 
     At the finish each can is held, and its time is written below its name. A time that the model of
-    a liquid cannot tell well is written with two digits. Below the picture there
-    is a close-up of each can, where there is room. With `centres` the film is no race: the centres
-    of mass of the loads start at one line, and are marked and joined.
+    a liquid cannot tell well is written with two digits. Below the picture there is a close-up of
+    each can, where there is room. With `centres` the film is no race: the centres of mass of the
+    loads start at one line, and are marked and joined.
 
     Raises:
       ParameterError: when it is planned, if the cans differ in their radii or inclines.
@@ -180,16 +180,14 @@ class Race(Film):
                 sheet.blank(height - below, height)
                 for lane, (runner, result) in enumerate(zip(runners, results, strict=True)):
                     place = self._plate_place(display, view, lane, now[lane, 0])
-                    said = [runner.note] if runner.note else []
-                    if time >= result.time:
-                        said.append(result.words)
+                    outcome = result.words if time >= result.time else ""
                     lines = [runner.name]
                     if has_close_ups:
                         panel = _panel(sheet, lane, len(runners), height - below)
                         _draw_close_up(painter, display, lane, now[lane], panel, sheet)
-                        _name(sheet, panel, runner, result.words if time >= result.time else "")
+                        _name(sheet, panel, runner, outcome)
                     else:
-                        lines += said
+                        lines += [said for said in (runner.note, outcome) if said]
                     sheet.plate(place, lines, runner.colour, (1, 0.5))
                 if self.centres:
                     board.draw_distances(sheet, view)

@@ -86,6 +86,7 @@ class Sheet:
         below = self._pixels[top : top + rows, left : left + columns]
         uncovered = 255 - picture[..., 3].astype(np.uint16)
         for channel in range(3):
+            # 127 is half of 255: the quotient is rounded, and not cut off.
             seen_through = (below[..., channel] * uncovered + 127) // 255
             below[..., channel] = picture[..., channel] + seen_through
 

@@ -219,12 +219,14 @@ class ChartStrip:
         """Draw a chart without the lines that grow with the film, and return these."""
         unit = self._unit
         for line in sorted(chart.lines, key=lambda line: line.colour is not None):
+            colour = line.colour or (INK if line.thin else _THEORY)
+            width = 0.18 if line.colour or line.thin else 0.5  # theory's are wide
             panel.plot(
                 line.time,
                 unbroken(line.values),
-                color=line.colour or (INK if line.thin else _THEORY),
+                color=colour,
                 animated=line.colour is not None,
-                linewidth=(0.18 if line.colour or line.thin else 0.5) * unit,
+                linewidth=width * unit,
                 linestyle="--" if line.thin else "-",
                 label=line.name,
             )

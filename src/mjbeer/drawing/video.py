@@ -58,11 +58,10 @@ def render(
 
     If writing fails, no file is left, and an existing one is kept.
 
-    `width` and `height` are in pixels, `fps` in
-    frames per second of the video; `speed` is 1 for real time, 0.25 for four times slower. `camera`
-    is "fixed" (it stands still and shows the whole motion), "pan" (it moves with a constant
-    acceleration), or "auto" (fixed, unless the can would be too small). If `progress` is true and
-    standard error is a terminal, it shows a progress bar.
+    `width` and `height` are in pixels, `fps` in frames per second of the video. `speed` is 1 for
+    real time, 0.25 for four times slower. `camera` is "fixed" (it stands still and shows the whole
+    motion), "pan" (it moves with a constant acceleration), or "auto" (fixed, unless the can would
+    be too small). If `progress` is true and standard error is a terminal, it shows a progress bar.
 
     Each picture of a run whose equations were not solved says so. To find out, a run with a fixed
     timestep is repeated with another, which takes twice its time.

@@ -42,7 +42,8 @@ class Table:
         """Return the table as Markdown, with the title in bold above it if there is one."""
         heading = f"**{self.title}**\n\n" if self.title else ""
         sides = ["---" if index in self.left else "---:" for index in range(len(self.columns))]
-        head, *rows = [f"| {' | '.join(row)} |\n" for row in (self.columns, *self.rows)]
+        lines = [f"| {' | '.join(row)} |\n" for row in (self.columns, *self.rows)]
+        head, *rows = lines
         return "".join([heading, head, f"|{'|'.join(sides)}|\n", *rows])
 
     def tabbed(self) -> str:

@@ -88,7 +88,8 @@ def terms(equation: str, observed: Any) -> list[Any]:
     compiled = _compiled(equation)
     named = {"observed": observed}
     for name in compiled.names:
-        named[name] = getattr(observed if hasattr(observed, name) else np, name)
+        owner = observed if hasattr(observed, name) else np
+        named[name] = getattr(owner, name)
     return [eval(term, named) for term in compiled.terms]
 
 

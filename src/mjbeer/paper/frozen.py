@@ -107,7 +107,8 @@ def _mean_acceleration(offset_factor: float = 1.0) -> Observation:
     """Return the axis's mean `acceleration` [m/s^2] in a roll-down, with b multiplied by a factor.
 
     The can starts at phi = pi. The mean is from the last whole turn that ends before 8 s to the
-    last one that ends before 16 s.
+    last one that ends before 16 s. `turn` has the angles of an even turn [rad], for the mean of
+    sqrt(J).
     """
     scene = footnote_scene(offset_factor)
     run = simulate(scene, 16, math.pi, rolling="equality", integrator="DOP853")

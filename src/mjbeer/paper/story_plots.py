@@ -81,11 +81,14 @@ def draw_trivial(panels: Sequence[Axes]) -> None:
     for axes in panels:
         axes.set_xlim(-0.02, 1.38)
         axes.set_xticks(np.linspace(0, 1, 6))
+    # The last run of the loop is the one that swings.
     end = run.time[-1]
-    dark = "#9A6A00"
-    note(angle, "let go at 60°", (end, math.degrees(run.phi[-1])), (7, 0), color=swinging)
+    last_phi = math.degrees(run.phi[-1])
+    last_lead = 1e3 * (run.u[-1] - even[-1])
+    dark = "#9A6A00"  # `still` is too pale for letters
+    note(angle, "let go at 60°", (end, last_phi), (7, 0), color=swinging)
     note(angle, "let go at 0°", (end, 0), (7, 0), color=dark)
-    note(ahead, "let go at 60°", (end, 1e3 * (run.u - even)[-1]), (7, 0), color=swinging)
+    note(ahead, "let go at 60°", (end, last_lead), (7, 0), color=swinging)
     note(ahead, "let go at 0°", (end, 0), (7, -7), color=dark)
     note(ahead, "centre of mass\nof the beer, in both", (end, 0), (7, 13), color="black")
     angle.set(ylabel="φ [°]", title=_TILT)

@@ -174,13 +174,13 @@ def _view(pixels: tuple[int, int], top: int) -> View:
 def _charts(can: Standing, runs: list[Carried]) -> list[Chart]:
     """Return charts of the forces, of what the slosh adds to them, and of the surface."""
     mass = can.mass + can.can.mass
-    end = runs[0].time[[0, -1]]
+    whole_time = runs[0].time[[0, -1]]
     radius = 1e3 * can.can.radius  # [mm]
     limit = radius * QUANTITATIVE
     forces = []
     added = []
     rises = [
-        Line(f"black rings, ±{limit:.1f} mm", end, np.full(2, height), thin=True)
+        Line(f"black rings, ±{limit:.1f} mm", whole_time, np.full(2, height), thin=True)
         for height in (-limit, limit)
     ]
     for move, run in zip(MOVES, runs, strict=True):
@@ -295,6 +295,7 @@ def _draw_gripper(pen: _Pen, can: Standing, place: np.ndarray, colour: np.ndarra
     """Draw a gripper, with pads of a colour, that holds a can with the bottom at a `place` [m]."""
     length = can.can.length
     wall = (1 + WALL) * can.can.radius
+    # Half the sizes of its parts [m]; where they are leaves gaps that are seen.
     pad = np.array([0.004, 0.012, 0.03])
     arm = np.array([0.005, 0.01, length / 2])
     bridge = np.array([wall + 0.024, 0.014, 0.008])

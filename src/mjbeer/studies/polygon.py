@@ -15,7 +15,6 @@ from mjbeer.output.terminal import Table
 from mjbeer.studies import can_test, stored_tables
 from mjbeer.studies.can_test import DURATION, ROLL
 from mjbeer.theory import prism
-from mjbeer.theory.trajectory import exact
 
 FACETS = (16, 32, 64, 120)
 TIME_CONSTANTS = (2e-4, 1e-3, 5e-3)
@@ -47,11 +46,6 @@ def physx_prisms() -> list[PhysxPrism]:
     """Return the prisms that PhysX rolled."""
     stored = json.loads(PHYSX.read_text(encoding="utf-8"))
     return [PhysxPrism(**row) for row in stored["prisms"]]
-
-
-def cylinder_end() -> float:
-    """Return phi of the round can at the end [rad]: exact theory."""
-    return float(exact(ROLL.scene, [DURATION], ROLL.phi0, ROLL.phi_dot0).phi[-1])
 
 
 def theory_end(edges: Sequence[float], flies: bool = True, duration: float = DURATION) -> float:

@@ -247,23 +247,24 @@ class SmallMotion:
 
     def exact(self, timestep: float) -> np.ndarray:
         """Return the matrix exp(h L) of (q, h q') over a `timestep` h [s], without the equality."""
-        none = np.zeros_like(self.mass)
-        one = np.eye(len(self.mass))
+        zeros = np.zeros_like(self.mass)
+        identity = np.eye(len(self.mass))
         stiffness = np.linalg.solve(self.mass, self.gravity)
-        damping = np.linalg.solve(self.mass, self.damping + none)
-        return expm(np.block([[none, one], [-stiffness * timestep**2, -damping * timestep]]))
+        damping = np.linalg.solve(self.mass, zeros + self.damping)  # a matrix, if it is 0 as well
+        lower = [-stiffness * timestep**2, -damping * timestep]
+        return expm(np.block([[zeros, identity], lower]))
 
     def step(self, integrator: str, timestep: float, row: SoftRow | None = None) -> np.ndarray:
         """Return the matrix of one step of (q, h q') with a `timestep` h [s].
 
         The equality, if there is one, is `row`.
         """
-        none = np.zeros_like(self.mass)
-        mass = self.mass + none
+        zeros = np.zeros_like(self.mass)
+        mass = self.mass
         if integrator in IMPLICIT:
             mass = self.mass + timestep * self.damping
         stiffness = np.linalg.solve(mass, self.gravity)
-        damping = np.linalg.solve(mass, self.damping + none)
+        damping = np.linalg.solve(mass, zeros + self.damping)  # a matrix, if it is 0 as well
         if row is not None and self.jacobian is not None:
             if integrator == "discrete":
                 row = row.at_end_of_step(timestep)

@@ -440,6 +440,7 @@ def _simulate_missing(
                 dataset.attrs["failed"] = failures.text
                 before = done
                 done += len(piece)
+                # The bar has a hundred steps: one for each per cent that this piece completes.
                 for _ in range(100 * before // len(scenes), 100 * done // len(scenes)):
                     advance(f"{len(scenes)} scenes [%]")
                 if path is not None and time.monotonic() - saved > _SAVED_EVERY:

@@ -63,6 +63,8 @@ def guess_anywhere(model: TrackModel, values: dict[str, float]) -> FirstGuess:
 
     The releases that are tried are so close together that the swings are in step for one of them.
     """
+    # Over 1.8 durations, neighbours are at most 0.7 swing times apart, in which a load swings by
+    # less than a radian; only a track of very many swings has fewer releases than that.
     count = min(2000, max(91, math.ceil(2.6 * model.duration / model.swing_time)))
     releases = model.track.time[0] + model.duration * np.linspace(-1, 0.8, count)
     return _best_release(model, values, releases, most_points=100)
@@ -74,6 +76,7 @@ def guess_nearby(model: TrackModel, values: dict[str, float]) -> FirstGuess:
     If the release is some whole swings too early or too late, the can is ahead or behind although
     it rocks in step. The release among the values is one of those that are compared.
     """
+    # A swing takes five swing times: three swings each way, in steps of a sixth of a radian or so.
     releases = values["released"] + 17 * model.swing_time * np.linspace(-1, 1, 201)
     return _best_release(model, values, releases, most_points=2000)
 

@@ -138,8 +138,9 @@ def number(value: float) -> str:
     if value < _PLAIN:
         digits, power = f"{value:.1e}".split("e")
         return f"{digits}e{int(power)}"
-    decimals = max(0, 1 - math.floor(math.log10(float(f"{value:.1e}"))))
-    return f"{float(f'{value:.1e}'):,.{decimals}f}"
+    rounded = float(f"{value:.1e}")
+    decimals = max(0, 1 - math.floor(math.log10(rounded)))
+    return f"{rounded:,.{decimals}f}"
 
 
 def error_cell(row: Row) -> str:
@@ -200,15 +201,14 @@ def versions(engine: Engine) -> str:
 
 def measured(results: Results) -> str:
     """Return versions and machine as sentences."""
-    places = " and ".join(
-        dict.fromkeys(
-            f"{engine.machine['cores']} cores of an {engine.machine['processor']}"
-            for engine in results.engines
-        )
-    )
+    machines = [
+        f"{engine.machine['cores']} cores of an {engine.machine['processor']}"
+        for engine in results.engines
+    ]
+    places = " and ".join(dict.fromkeys(machines))
+    pythons = " and ".join(sorted({engine.python for engine in results.engines}))
     names = ", ".join(versions(engine) for engine in results.engines)
-    text = f"Measured on {places}, of which a run uses one, with Python "
-    text += f"{' and '.join(sorted({engine.python for engine in results.engines}))}: {names}."
+    text = f"Measured on {places}, of which a run uses one, with Python {pythons}: {names}."
     for file, reason in results.absent.items():
         text += f" Left out: {file}, as {reason}."
     return text

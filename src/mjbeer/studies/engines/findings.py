@@ -198,21 +198,21 @@ def _of_shapes(results: Results) -> list[str]:
 def _of_timesteps(results: Results) -> list[str]:
     """Return what a shorter timestep does where nothing slides."""
     read = _Reader(results)
-    first = {
+    of_first_order = {
         "DART's cylinder with ODE's contact points": Way("DART", "cylinder", "ODE finds contacts"),
         "Pymunk's circle": Way("Pymunk", "circle", "default"),
         "PyBullet's sphere": Way("PyBullet", "sphere", "default"),
         "MuJoCo's stiff contact with its default integrator": _STIFF_EULER,
     }
-    falls = ", ".join(f"{read.power(way)} for {name}" for name, way in first.items())
-    single = {
+    falls = ", ".join(f"{read.power(way)} for {name}" for name, way in of_first_order.items())
+    in_single_precision = {
         "Box2D": Way("Box2D", "circle", "long, stiff contact"),
         "Rapier": Way("Rapier", "cylinder", "stiff contact"),
         "Newton on MuJoCo's contact": _NEWTON,
         "PhysX's capsule at its defaults": Way("PhysX (SAPIEN)", "capsule", "default"),
     }
     floors = ", ".join(
-        f"{read.fine_too('roll', way)} rad for {name}" for name, way in single.items()
+        f"{read.fine_too('roll', way)} rad for {name}" for name, way in in_single_precision.items()
     )
     return [
         "**Where a contact does not slide, the integrator's order remains**: the errors fall as "

@@ -20,14 +20,9 @@ from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory, exact
 
 _HERE = pathlib.Path(__file__).parent
-RESULTS = next(
-    (
-        path
-        for path in (_HERE / "results.json", _HERE.parents[3] / "engines" / "results.json")
-        if path.is_file()
-    ),
-    _HERE.parents[3] / "engines" / "results.json",
-)
+_OF_WHEEL = _HERE / "results.json"
+_OF_CHECKOUT = _HERE.parents[3] / "engines" / "results.json"
+RESULTS = _OF_WHEEL if _OF_WHEEL.is_file() else _OF_CHECKOUT
 """Where the results are: in a wheel, or in a checkout."""
 DURATION = 2.0
 """Length of a motion [s]."""
@@ -51,7 +46,9 @@ _HELPS = 0.25
 """The least share by which the last timestep lowers the error of what converges; with less, the
 error has a floor."""
 _RADIUS = 0.033
+"""Radius of the can [m]."""
 _MASS = 0.2
+"""Mass of the load [kg]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -252,15 +249,16 @@ class Row:
     @property
     def is_sensitive(self) -> bool:
         """Whether a start that is `ASIDE` changes the error by more than `SENSITIVE`."""
-        if not self.error < math.inf:
+        if not math.isfinite(self.error):
             return False
-        return not abs(self.aside_error - self.error) <= SENSITIVE * self.error
+        keeps_its_error = abs(self.aside_error - self.error) <= SENSITIVE * self.error
+        return not keeps_its_error  # nor does one whose other motion has no error
 
     def judged(self, motion: Motion, aside: Motion) -> None:
         """Take a motion, and the errors of it and of the one that began aside."""
         case = CASES[self.case]
         errors = judge(case, motion.rounded())
-        if not errors.largest < math.inf:
+        if not math.isfinite(errors.largest):
             self.failure = "the motion explodes"
             return
         self.motion = motion.rounded()

@@ -270,5 +270,7 @@ def thrown(
                 lowest = min(lowest, energy)
                 gain = max(gain, energy - lowest)
         diverged = any(warning.number for warning in data.warning)
-        failed += diverged or not gain <= _GAIN * start
+        keeps_its_energy = gain <= _GAIN * start  # false if the gain is NaN
+        if diverged or not keeps_its_energy:
+            failed += 1
     return failed
