@@ -1,4 +1,4 @@
-"""The audit: every equation has a row, which passes, and fails if the equation is a broken one."""
+"""The audit: every equation has a claim, which passes, and fails if the equation is broken."""
 
 import dataclasses
 import re
@@ -21,113 +21,177 @@ from mjbeer.paper.claim import (
 )
 from mjbeer.paper.witness import EXACT, HELD, METAL, ROLL_DOWN, SWING, WHEEL
 
-ROWS = paper.claims()
-NAMES = [f"{row.equation} {row.quantity}" for row in ROWS]
+CLAIMS = paper.claims()
+NAMES = [f"{claim.equation} {claim.quantity}" for claim in CLAIMS]
 BROKEN = 0.01
 """Relative error of one term in a broken equation; it is twenty bounds where that is more."""
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("row", ROWS, ids=NAMES)
-def test_row(row: Claim) -> None:
-    result = row.measure()
+@pytest.mark.parametrize("claim", CLAIMS, ids=NAMES)
+def test_claim(claim: Claim) -> None:
+    result = claim.measure()
     assert result.passed, result.summary_line()
 
 
-def test_every_equation_footnote_with_a_claim_and_figure_with_data_has_a_row() -> None:
-    """Footnotes 3 and 5 only name things, and so do the figures that are not listed here."""
-    named = " ".join(row.equation for row in ROWS)
-    equations = {int(number) for number in re.findall(r"\((\d+)\)", named)}
-    footnotes = {int(number) for number in re.findall(r"footnote (\d+)", named)}
-    assert equations == set(range(1, 62))
-    assert footnotes == {1, 2, 4, 6, 7, 8, 9, 10}
-    figures = ("Fig. 1", "Fig. 2", "Fig. 3", "figure of (36)", "figure of (37)", "figure of A.3")
-    for figure in figures:
-        assert figure in named
+def numbers_named(pattern: str) -> set[int]:
+    """Return the numbers that a pattern finds in what the claims are about."""
+    named = " ".join(claim.equation for claim in CLAIMS)
+    return {int(number) for number in re.findall(pattern, named)}
+
+
+def test_every_equation_has_a_claim() -> None:
+    assert numbers_named(r"\((\d+)\)") == set(range(1, 62))
+
+
+def test_every_footnote_that_claims_something_has_a_claim() -> None:
+    """Footnotes 3 and 5 only name things."""
+    assert numbers_named(r"footnote (\d+)") == {1, 2, 4, 6, 7, 8, 9, 10}
+
+
+@pytest.mark.parametrize(
+    "figure", ["Fig. 1", "Fig. 2", "Fig. 3", "figure of (36)", "figure of (37)", "figure of A.3"]
+)
+def test_every_figure_with_data_has_a_claim(figure: str) -> None:
+    """The figures that are not listed here only name things."""
+    assert [claim for claim in CLAIMS if figure in claim.equation]
 
 
 def test_what_is_no_numbered_equation_is_quoted() -> None:
-    in_words = [row for row in ROWS if not row.equation.startswith("(")]
-    assert not [row.equation for row in in_words if not row.quote]
+    in_words = [claim for claim in CLAIMS if not claim.equation.startswith("(")]
+
+    assert in_words
+    assert not [claim.equation for claim in in_words if not claim.quote]
 
 
-def test_kinds_of_what_is_wrong() -> None:
-    """A consequence names its misprint; a wrong form misses by more than five bounds."""
-    wrong = [(row.equation, row.misprint) for row in ROWS if row.misprint]
-    kinds = Counter(misprint.kind for _, misprint in wrong)
+WRONG = [(claim.equation, claim.misprint) for claim in CLAIMS if claim.misprint]
+"""The equations that are wrong as printed, each with what is wrong."""
+
+
+def test_count_of_each_kind_of_what_is_wrong() -> None:
+    kinds = Counter(misprint.kind for _, misprint in WRONG)
+
     assert kinds == {MISPRINT: 18, CONSEQUENCE: 4, APPROXIMATION: 3}
-    slips = {equation for equation, misprint in wrong if misprint.kind == MISPRINT}
-    for _, misprint in wrong:
-        assert (misprint.of in slips) == (misprint.kind == CONSEQUENCE)
-    for row in ROWS:
-        assert not (row.misprint and row.limit)
-        must_fail = row.misprint or row.limit
-        assert must_fail is None or must_fail.expected_error > 5 * row.bound.error
+
+
+def test_a_consequence_names_its_misprint_and_nothing_else_does() -> None:
+    misprinted = {equation for equation, misprint in WRONG if misprint.kind == MISPRINT}
+
+    for _, misprint in WRONG:
+        assert (misprint.of in misprinted) == (misprint.kind == CONSEQUENCE)
+
+
+@pytest.mark.parametrize("claim", CLAIMS, ids=NAMES)
+def test_a_claim_has_a_misprint_or_a_limit_but_not_both(claim: Claim) -> None:
+    assert not (claim.misprint and claim.limit)
+
+
+@pytest.mark.parametrize(
+    "claim",
+    [claim for claim in CLAIMS if claim.misprint or claim.limit],
+    ids=lambda claim: claim.equation,
+)
+def test_what_must_fail_misses_by_more_than_five_bounds(claim: Claim) -> None:
+    """A form that is wrong must fail, and so must the case beyond a limit."""
+    must_fail = claim.misprint or claim.limit
+
+    assert must_fail
+    assert must_fail.expected_error > 5 * claim.bound.error
+
+
+NOT_CONFIRMED = [claim for claim in CLAIMS if claim.verdict != CONFIRMED]
+MISPRINTED = [claim for claim in NOT_CONFIRMED if claim.misprint]
+LIMITED = [claim for claim in NOT_CONFIRMED if not claim.misprint]
+"""The claims that hold within a limit only."""
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "row", [row for row in ROWS if row.verdict != CONFIRMED], ids=lambda row: row.equation
-)
-def test_a_row_fails_if_the_wrong_form_is_right_or_the_right_form_is_wrong(row: Claim) -> None:
-    """For a limit, the case beyond it stands for the wrong form."""
-    if row.misprint:
-        misprint = dataclasses.replace(row.misprint, wrong=row.residual)
-        both_right = dataclasses.replace(row, misprint=misprint)
-        both_wrong = dataclasses.replace(row, residual=row.printed)
-    else:
-        assert row.limit
-        limit = row.limit._replace(observe=row.witness.observe)
-        witness = row.witness._replace(observe=row.limit.observe)
-        both_right = dataclasses.replace(row, limit=limit)
-        both_wrong = dataclasses.replace(row, witness=witness)
+@pytest.mark.parametrize("claim", MISPRINTED, ids=lambda claim: claim.equation)
+def test_a_claim_fails_if_the_wrong_form_is_right_or_the_right_form_is_wrong(claim: Claim) -> None:
+    assert claim.misprint
+    misprint = dataclasses.replace(claim.misprint, wrong=claim.residual)
+    both_right = dataclasses.replace(claim, misprint=misprint)
+    both_wrong = dataclasses.replace(claim, residual=claim.printed)
+
     assert not both_right.measure().passed
     assert not both_wrong.measure().passed
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("row", ROWS, ids=NAMES)
-def test_each_term_counts(row: Claim) -> None:
+@pytest.mark.parametrize("claim", LIMITED, ids=lambda claim: claim.equation)
+def test_a_claim_fails_if_both_cases_are_within_its_limit_or_both_beyond(claim: Claim) -> None:
+    assert claim.limit
+    limit = claim.limit._replace(observe=claim.witness.observe)
+    witness = claim.witness._replace(observe=claim.limit.observe)
+    both_within = dataclasses.replace(claim, limit=limit)
+    both_beyond = dataclasses.replace(claim, witness=witness)
+
+    assert not both_within.measure().passed
+    assert not both_beyond.measure().passed
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("claim", CLAIMS, ids=NAMES)
+def test_each_term_counts(claim: Claim) -> None:
     """An equation fails if one of its terms is wrong by a hundredth.
 
     A term below a thousandth of the largest need not count.
     """
-    observed = row.witness.observe()
-    right = terms(row.residual, observed)
-    scale = value(row.scale, observed) if row.scale else None
+    observed = claim.witness.observe()
+    right = terms(claim.residual, observed)
+    scale = value(claim.scale, observed) if claim.scale else None
     sizes = [float(np.abs(term).max()) for term in right]
     largest = max(sizes) if scale is None else float(np.abs(scale).max())
+
     for index, size in enumerate(sizes):
         broken = list(right)
-        broken[index] = right[index] * (1 + max(BROKEN, 20 * row.bound.error))
-        fails = relative_residual(broken, scale) > row.bound.error
+        broken[index] = right[index] * (1 + max(BROKEN, 20 * claim.bound.error))
+
+        fails = relative_residual(broken, scale) > claim.bound.error
+
         is_small = size <= 1e-3 * largest
         assert fails or is_small, index
 
 
 MOTIONS = [
-    row
-    for row in ROWS
-    if row.witness in (SWING, METAL, WHEEL, ROLL_DOWN) and "equation of motion" in row.quantity
+    claim
+    for claim in CLAIMS
+    if claim.witness in (SWING, METAL, WHEEL, ROLL_DOWN) and "equation of motion" in claim.quantity
 ]
-ACCELERATION = next(row for row in ROWS if row.equation == "(15)")
+ACCELERATION = next(claim for claim in CLAIMS if claim.equation == "(15)")
 
 
-@pytest.mark.parametrize("row", [*MOTIONS, ACCELERATION], ids=lambda row: row.equation)
-def test_an_equation_of_motion_has_no_idle_term_and_no_wrong_constant(row: Claim) -> None:
-    """Each term exceeds a thousandth of the largest, so that the motion tests it.
+an_equation_of_motion = pytest.mark.parametrize(
+    "claim", [*MOTIONS, ACCELERATION], ids=lambda claim: claim.equation
+)
 
-    A row also fails if g or b is wrong by 1e-5.
-    """
-    observed = row.witness.observe()
-    sizes = [float(np.abs(term).max()) for term in terms(row.residual, observed)]
+
+@an_equation_of_motion
+def test_an_equation_of_motion_has_no_idle_term(claim: Claim) -> None:
+    """Each term exceeds a thousandth of the largest, so that the motion tests it."""
+    observed = claim.witness.observe()
+
+    sizes = [float(np.abs(term).max()) for term in terms(claim.residual, observed)]
+
     assert min(sizes) > 1e-3 * max(sizes)
-    constants = ["g"] if row is ACCELERATION else ["g", "b"]
+
+
+@an_equation_of_motion
+def test_an_equation_of_motion_is_tested_to_the_bound_of_its_motion(claim: Claim) -> None:
+    assert claim.bound == (EXACT if claim.witness is SWING else HELD)
+
+
+@an_equation_of_motion
+def test_an_equation_of_motion_fails_if_g_or_b_is_wrong_by_1e_5(claim: Claim) -> None:
+    """The acceleration of Eq. (15) has no b."""
+    observed = claim.witness.observe()
+    constants = ["g"] if claim is ACCELERATION else ["g", "b"]
+
     for constant in constants:
         changed = getattr(observed, constant) * (1 + 1e-5)
         wrong = Observation(**vars(observed) | {constant: changed})
-        assert row.bound == (EXACT if row.witness is SWING else HELD)
-        assert relative_residual(terms(row.residual, wrong)) > row.bound.error
+
+        assert relative_residual(terms(claim.residual, wrong)) > claim.bound.error
 
 
 def test_an_error_is_a_share_of_the_largest_term_or_of_a_scale() -> None:

@@ -1,4 +1,4 @@
-"""The equations of the rows, derived by Lagrange's equations; a misprint does not follow."""
+"""The equations of the claims, derived by Lagrange's equations; a misprint does not follow."""
 
 from functools import cache
 from typing import Any
@@ -25,7 +25,7 @@ GIVEN = {
     WHEEL: {can_inertia: can_mass * a**2, inertia: 0},
     **dict.fromkeys((ROLL_DOWN, FOOTNOTE_8), HALF | ROLLS),
 }
-"""What holds in the scene of each motion that rows share: no can, a half cylinder, rolling."""
+"""What holds in the scene of each motion that claims share: no can, a half cylinder, rolling."""
 
 
 def slope(value: Any) -> Any:
@@ -112,31 +112,32 @@ def vanishes(expression: Any, witness: Witness) -> bool:
 
 # Eq. (1) is about a time since the start, and a linear equation is only near the truth.
 DERIVED = [
-    row
-    for row in paper.claims()
-    if row.witness in GIVEN
-    and row.limit is None
-    and row.equation != "(1)"
-    and "linear" not in row.quantity
+    claim
+    for claim in paper.claims()
+    if claim.witness in GIVEN
+    and claim.limit is None
+    and claim.equation != "(1)"
+    and "linear" not in claim.quantity
 ]
 
 
 def test_every_equation_of_a_motion_is_derived() -> None:
-    named = " ".join(row.equation for row in DERIVED)
+    named = " ".join(claim.equation for claim in DERIVED)
     numbers = [2, 3, 4, *range(11, 23), 25, *range(39, 50), 51, 52, *range(56, 62)]
     assert not [number for number in numbers if f"({number})" not in named]
 
 
 @pytest.mark.costly
-@pytest.mark.parametrize("row", DERIVED, ids=lambda row: f"{row.equation} {row.quantity}")
-def test_derived(row: Claim) -> None:
+@pytest.mark.parametrize("claim", DERIVED, ids=lambda claim: f"{claim.equation} {claim.quantity}")
+def test_derived(claim: Claim) -> None:
     """No term vanishes by itself, so none can be left out; a misprint does not follow."""
-    right = terms(row.residual, Q)
-    assert vanishes(sum(right), row.witness)
+    right = terms(claim.residual, Q)
+
+    assert vanishes(sum(right), claim.witness)
     for term in right:
-        assert not vanishes(term, row.witness)
-    if row.misprint:
-        assert not vanishes(value(row.printed, Q), row.witness)
+        assert not vanishes(term, claim.witness)
+    if claim.misprint:
+        assert not vanishes(value(claim.printed, Q), claim.witness)
 
 
 def is_value_of(formula: str, expected: Any, given: dict[Any, Any]) -> bool:
@@ -168,7 +169,7 @@ def test_frequency_of_frozen_beer() -> None:
 
 def test_linear_torque_about_c() -> None:
     """Eq. (4) has the slope of its exact form, and as printed it has not."""
-    (linear,) = (row for row in paper.claims() if row.equation == "(4)" and row.misprint)
+    (linear,) = (claim for claim in paper.claims() if claim.equation == "(4)" and claim.misprint)
     assert sp.diff(value(linear.residual, Q), phi).subs(phi, 0) == 0
     assert sp.diff(value(linear.printed, Q), phi).subs(phi, 0) != 0
 

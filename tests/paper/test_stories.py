@@ -3,6 +3,8 @@
 import math
 import os
 import pathlib
+from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -24,6 +26,7 @@ STORIES = {story.name: story for story in stories.STORIES}
 @pytest.mark.parametrize("name", STORIES)
 def test_a_plot_is_drawn_and_small(name: str, tmp_path: pathlib.Path) -> None:
     STORIES[name].plot(tmp_path / name)
+
     assert os.listdir(tmp_path) == [f"{name}.svg"]
     assert (tmp_path / f"{name}.svg").stat().st_size < 150_000
 
@@ -31,36 +34,73 @@ def test_a_plot_is_drawn_and_small(name: str, tmp_path: pathlib.Path) -> None:
 def test_footnote_8_as_printed_is_another_motion() -> None:
     times = np.linspace(0, 3, 301)
     truth = exact(footnote_scene(), times, 0.0).phi
+
     printed = footnote_8_as_printed(footnote_scene(), times, 0.0)
+
     assert np.abs(printed - truth).max() > math.radians(4)
 
 
-@pytest.mark.parametrize(
-    ("options", "problem"), [([], None), (["--films"], None), (["--films"], "no OpenGL")]
-)
-def test_the_command(
-    options: list[str],
-    problem: str | None,
-    tmp_path: pathlib.Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture,
-) -> None:
-    """Films that cannot be drawn are named."""
+class Written(NamedTuple):
+    """What `mjbeer paper` wrote."""
+
+    names: set[str]
+    """Of the files."""
+    text: str
+    """Of stories.md."""
+    messages: str
+
+
+@pytest.fixture
+def write(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> Callable[..., Written]:
+    """Return the command `mjbeer paper`, which here has one story and draws no film."""
     stubs.draw(monkeypatch)
-    monkeypatch.setattr(opengl, "problem", lambda: problem)
 
-    status = main(["paper", *options, "--output", str(tmp_path)])
+    def written(*options: str) -> Written:
+        assert main(["paper", *options, "--output", str(tmp_path)]) == 0
+        names = {name for name in os.listdir(tmp_path) if not name.startswith(".")}
+        text = (tmp_path / "stories.md").read_text()
+        messages = capsys.readouterr().err
+        assert f"the stories are in {tmp_path / 'stories.md'}\n" in messages
+        for line in ("## told", "![told](told.svg)", "A stub's story."):
+            assert line in text
+        return Written(names, text, messages)
 
-    assert status == 0
-    text = (tmp_path / "stories.md").read_text()
-    err = capsys.readouterr().err
-    filmed = bool(options) and not problem
-    names = {name for name in os.listdir(tmp_path) if not name.startswith(".")}
-    assert names == {"letters.svg", "told.svg", "stories.md"} | ({"told.mp4"} if filmed else set())
-    for line in ("## told", "![told](told.svg)", "A stub's story."):
-        assert line in text
-    assert ("[Film](told.mp4)" in text) == filmed
-    missing = opengl.missing_films_message(["told.mp4"])
-    assert (f"Films: {missing}\n" in text) == bool(problem)
-    assert (missing in err) == bool(problem)
-    assert f"the stories are in {tmp_path / 'stories.md'}\n" in err
+    return written
+
+
+PLOTS_AND_TEXT = {"letters.svg", "told.svg", "stories.md"}
+FILM_LINK = "[Film](told.mp4)"
+NO_FILM = opengl.missing_films_message(["told.mp4"])
+
+
+def test_the_command_writes_plots_and_text(write: Callable[..., Written]) -> None:
+    written = write()
+
+    assert written.names == PLOTS_AND_TEXT
+    assert FILM_LINK not in written.text
+    assert f"Films: {NO_FILM}\n" not in written.text
+    assert NO_FILM not in written.messages
+
+
+def test_the_command_writes_films_if_it_is_asked_to(write: Callable[..., Written]) -> None:
+    written = write("--films")
+
+    assert written.names == PLOTS_AND_TEXT | {"told.mp4"}
+    assert FILM_LINK in written.text
+    assert f"Films: {NO_FILM}\n" not in written.text
+    assert NO_FILM not in written.messages
+
+
+def test_the_command_names_the_films_that_cannot_be_drawn(
+    write: Callable[..., Written], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(opengl, "problem", lambda: "no OpenGL")
+
+    written = write("--films")
+
+    assert written.names == PLOTS_AND_TEXT
+    assert FILM_LINK not in written.text
+    assert f"Films: {NO_FILM}\n" in written.text
+    assert NO_FILM in written.messages

@@ -46,7 +46,9 @@ def test_it_agrees_with_theory(name: str) -> None:
 def test_a_turn_is_that_of_exact_theory(can: Can, start: float) -> None:
     """DOP853 takes 64 steps a turn; near the separatrix its error is 2e-11 rad."""
     scene = sliding(can=can)
+
     observed = loop(scene, start)
+
     turn = 2 * math.pi / observed.Omega
     assert exact(scene, [turn], 0.0, start).phi[0] == pytest.approx(2 * math.pi, abs=1e-10)
     times = turn * np.arange(256) / 256
