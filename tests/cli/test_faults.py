@@ -72,26 +72,37 @@ ENDINGS = {"render": ".mp4", "fit": ".svg", "sweep": ".csv"}
 CHECKOUT = pathlib.Path(__file__).parents[2]
 
 
-@pytest.mark.parametrize("words", WORK)
-def test_what_cannot_be_written_is_known_before_the_work(
-    words: str,
-    tmp_path: pathlib.Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    """Where the same command can write, it begins its work."""
+@pytest.fixture
+def beginning(words: str, monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """Return the words of a command that raises WorkError where it begins its work."""
     monkeypatch.chdir(CHECKOUT)
     monkeypatch.setattr(f"mjbeer.{WORK[words]}", begin)
-    command = words.split()
-    name = f"new{ENDINGS.get(command[0], '')}"
+    return words.split()
+
+
+@pytest.mark.parametrize("words", WORK)
+def test_what_cannot_be_written_is_known_before_the_work(
+    beginning: list[str], tmp_path: pathlib.Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     folder = tmp_path / "misspelt"
-    target = folder / name
-    assert main([*command, "--output", str(target)]) == 2
+    target = folder / f"new{ENDINGS.get(beginning[0], '')}"
+
+    status = main([*beginning, "--output", str(target)])
+
+    assert status == 2
     reason = f"there is no folder {folder}; the nearest one that exists is {tmp_path}"
     assert capsys.readouterr().err == f"mjbeer: cannot write {target}: {reason}\n"
     assert not os.listdir(tmp_path)
+
+
+@pytest.mark.parametrize("words", WORK)
+def test_a_command_that_can_write_begins_its_work(
+    beginning: list[str], tmp_path: pathlib.Path
+) -> None:
+    target = tmp_path / f"new{ENDINGS.get(beginning[0], '')}"
+
     with pytest.raises(WorkError):
-        main([*command, "--output", str(tmp_path / name)])
+        main([*beginning, "--output", str(target)])
 
 
 def test_an_export_names_the_folder_that_does_not_exist(
@@ -100,7 +111,10 @@ def test_an_export_names_the_folder_that_does_not_exist(
     """To export takes less than a second, so nothing is checked before."""
     folder = tmp_path / "misspelt"
     target = folder / "can.xml"
-    assert main(["export", "frozen", "--output", str(target)]) == 2
+
+    status = main(["export", "frozen", "--output", str(target)])
+
+    assert status == 2
     reason = f"there is no folder {folder}; the nearest one that exists is {tmp_path}"
     assert capsys.readouterr().err == f"mjbeer: cannot write {target}: {reason}\n"
 
@@ -125,7 +139,10 @@ def test_the_options_of_a_film_are_checked_before_the_work(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(f"mjbeer.{WORK[f'render {scene}']}", begin)
-    assert main(["render", scene, *options.split()]) == 2
+
+    status = main(["render", scene, *options.split()])
+
+    assert status == 2
     assert capsys.readouterr().err.startswith(f"mjbeer: {message}")
     assert not os.listdir(tmp_path)
 
@@ -141,7 +158,10 @@ def test_a_folder_of_others_is_refused_before_the_work(
     names = ["index.html", "stories.md", "summary.md"]
     for name in names:
         (tmp_path / name).write_text("mine")
-    assert main([command, "--output", str(tmp_path)]) == 2
+
+    status = main([command, "--output", str(tmp_path)])
+
+    assert status == 2
     reason = f"`mjbeer {command}` did not write what is there (index.html, stories.md, summary.md)"
     advice = "name a new or an empty folder"
     assert capsys.readouterr().err == f"mjbeer: cannot write to {tmp_path}: {reason}: {advice}\n"
@@ -149,19 +169,9 @@ def test_a_folder_of_others_is_refused_before_the_work(
     assert all((tmp_path / name).read_text() == "mine" for name in names)
 
 
-@pytest.mark.parametrize(
-    ("command", "last"),
-    [
-        ("report", "index.html"),
-        ("benchmark", "summary.md"),
-        ("stability", "summary.md"),
-        ("paper", "stories.md"),
-    ],
-)
-def test_old_results_stay_if_a_command_is_interrupted_at_its_end(
-    command: str, last: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """When all but the last file are written. Then it is run again, and writes them all."""
+@pytest.fixture
+def little_work(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let every command that fills a folder write results that are at hand."""
     stubs.validate(monkeypatch, first=1e-5)
     stubs.draw(monkeypatch)
     study = Study("mjbeer stability", {"quick": True}, {})
@@ -172,31 +182,75 @@ def test_old_results_stay_if_a_command_is_interrupted_at_its_end(
     )
     monkeypatch.setattr("mjbeer.studies.stability.stability_study.run", lambda *_: study)
     monkeypatch.setattr("mjbeer.studies.stability.map_plots.figures", lambda _: {})
-    words = [command, "--output", str(tmp_path)]
-    assert main(words) == 0
-    names = [path for path in tmp_path.iterdir() if not path.name.startswith(".")]
-    assert tmp_path / last in names
-    for path in names:
+
+
+@pytest.fixture
+def old_results(command: str, tmp_path: pathlib.Path, little_work: None) -> list[pathlib.Path]:
+    """Return the files that a command has written, each of which now says "old"."""
+    assert main([command, "--output", str(tmp_path)]) == 0
+    paths = [path for path in tmp_path.iterdir() if not path.name.startswith(".")]
+    for path in paths:
         path.write_text("old")
+    return paths
+
+
+@pytest.fixture
+def interrupted(
+    command: str,
+    last: str,
+    old_results: list[pathlib.Path],
+    tmp_path: pathlib.Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> int:
+    """Return the exit status of a command that is interrupted where all but one file is written."""
+    assert tmp_path / last in old_results
     write = files.write
 
-    def interrupted(path: pathlib.Path, text: str) -> None:
+    def interrupt(path: pathlib.Path, text: str) -> None:
         if path.name == last:
             raise KeyboardInterrupt
         write(path, text)
 
     with monkeypatch.context() as patched:
-        patched.setattr(files, "write", interrupted)
-        assert main(words) == 130
-    assert [path.read_text() for path in names] == ["old"] * len(names)
-    assert main(words) == 0
-    assert "old" not in [path.read_text() for path in names]
+        patched.setattr(files, "write", interrupt)
+        return main([command, "--output", str(tmp_path)])
+
+
+each_command_and_its_last_file = pytest.mark.parametrize(
+    ("command", "last"),
+    [
+        ("report", "index.html"),
+        ("benchmark", "summary.md"),
+        ("stability", "summary.md"),
+        ("paper", "stories.md"),
+    ],
+)
+
+
+@each_command_and_its_last_file
+def test_old_results_stay_if_a_command_is_interrupted_at_its_end(
+    interrupted: int, old_results: list[pathlib.Path]
+) -> None:
+    assert interrupted == 130
+    assert [path.read_text() for path in old_results] == ["old"] * len(old_results)
+
+
+@each_command_and_its_last_file
+@pytest.mark.usefixtures("interrupted")
+def test_a_command_that_was_interrupted_writes_all_results_when_it_is_run_again(
+    command: str, old_results: list[pathlib.Path], tmp_path: pathlib.Path
+) -> None:
+    status = main([command, "--output", str(tmp_path)])
+
+    assert status == 0
+    assert "old" not in [path.read_text() for path in old_results]
 
 
 @linux
 def test_a_full_standard_output() -> None:
     with open("/dev/full", "w") as full:
         status, _, err = run(["simulate", *FROZEN], stdout=full)
+
     assert status == 2
     assert err.count("\n") == 1
     assert "No space left on device" in err
@@ -206,7 +260,9 @@ def test_a_closed_standard_output(tmp_path: pathlib.Path) -> None:
     """The command notices before the work, and leaves no file."""
     target = tmp_path / "motion.csv"
     words = ["simulate", *FROZEN, "--output", str(target)]
+
     status, _, err = run(words, preexec_fn=lambda: os.close(1))
+
     assert (status, err) == (2, "mjbeer: cannot write to standard output: it is closed\n")
     assert not target.exists()
 
@@ -216,8 +272,10 @@ def test_a_reader_that_goes_away(words: tuple[str, ...]) -> None:
     """One output fits into the buffers of Python and of the pipe, the other does not."""
     reader, writer = os.pipe()
     os.close(reader)
+
     try:
         status, _, err = run(["simulate", "frozen", "--duration", "0.01", *words], stdout=writer)
     finally:
         os.close(writer)
+
     assert (status, err) == (2, "mjbeer: cannot write to standard output: Broken pipe\n")

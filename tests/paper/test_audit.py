@@ -82,7 +82,7 @@ def test_a_consequence_names_its_misprint_and_nothing_else_does() -> None:
 
 
 @pytest.mark.parametrize("claim", CLAIMS, ids=NAMES)
-def test_a_claim_has_a_misprint_or_a_limit_but_not_both(claim: Claim) -> None:
+def test_no_claim_has_both_a_misprint_and_a_limit(claim: Claim) -> None:
     assert not (claim.misprint and claim.limit)
 
 
