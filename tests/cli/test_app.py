@@ -54,6 +54,7 @@ def test_standard_output_has_the_csv_or_the_json_alone(
     messages = [f"model does not hold: {warning}" for warning in run.warnings]
     messages += [f"note: {note}" for note in summary.notes]
     assert len(messages) > 1
+
     for option, expected in ((["--output", "-"], csv(run)), (["--json"], summary.json())):
         assert main([*words, *option]) == 0
         out, err = capsys.readouterr()
@@ -128,39 +129,58 @@ def test_what_is_not_allowed_is_one_line_and_exit_status_2(
     assert not os.listdir(tmp_path)
 
 
-def test_the_version_and_the_help_of_each_command(capsys: pytest.CaptureFixture[str]) -> None:
-    # For each command line, the names that its help lists.
+def help_pages() -> dict[str, Iterable[str]]:
+    """Return the names that its help lists for each command line."""
     listed: dict[str, Iterable[str]] = {"": COMMANDS}
     for command in COMMANDS:
         scenes = SCENES_OF.get(command, {})
         listed[command] = scenes
         before_scene = f"{command} FILE" if command == "fit" else command
         listed |= {f"{before_scene} {scene}": () for scene in scenes}
-    for words, names in listed.items():
-        with pytest.raises(SystemExit) as ended:
-            main([*words.split(), "--help"])
-        out = capsys.readouterr().out
-        assert ended.value.code == 0
-        assert f"usage: mjbeer {words}".rstrip() in out
-        for name in names:
-            assert re.search(rf"^    {name}\s", out, re.MULTILINE)
+    return listed
+
+
+@pytest.mark.parametrize(("words", "names"), help_pages().items())
+def test_the_help_of_each_command(
+    words: str, names: Iterable[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main([*words.split(), "--help"])
+
+    out = capsys.readouterr().out
+    assert ended.value.code == 0
+    assert f"usage: mjbeer {words}".rstrip() in out
+    for name in names:
+        assert re.search(rf"^    {name}\s", out, re.MULTILINE)
+
+
+def test_the_version(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         main(["--version"])
+
     assert capsys.readouterr().out == f"mjbeer {version('mjbeer')}\n"
 
 
-def test_a_fit_without_its_file_takes_no_scene_for_one(
+def test_the_help_of_a_fit_without_its_file_names_the_file(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     with pytest.raises(SystemExit):
         main(["fit", "liquid", "--help"])
+
     out = capsys.readouterr().out
     assert out.startswith("usage: mjbeer fit FILE liquid [options]\n")
     assert "--viscosity" in out
-    for words in (["fit", "liquid"], ["fit", "liquid", "--fill", "0.4"]):
-        assert main(words) == 2
-        message = "the following arguments are required: FILE; see `mjbeer fit --help`"
-        assert capsys.readouterr().err == f"mjbeer: {message}\n"
+
+
+@pytest.mark.parametrize("words", ["fit liquid", "fit liquid --fill 0.4"])
+def test_a_fit_without_its_file_takes_no_scene_for_one(
+    words: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    status = main(words.split())
+
+    assert status == 2
+    message = "the following arguments are required: FILE; see `mjbeer fit --help`"
+    assert capsys.readouterr().err == f"mjbeer: {message}\n"
 
 
 def test_no_command_line_loads_what_draws_before_it_is_needed() -> None:
