@@ -8,13 +8,14 @@ import re
 import shutil
 import subprocess
 import urllib.parse
-from typing import Any
+from functools import cache
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
 import quickjs
 
-from mjbeer import Can, Scene, exact, frozen, liquid, read_track, sliding
+from mjbeer import Can, Scene, Trajectory, exact, frozen, liquid, read_track, sliding
 from mjbeer.theory import can, slosh
 from mjbeer.theory.equations import (
     kinetic_energy,
@@ -50,12 +51,12 @@ Case = tuple[dict[str, Any], list[float]]
 
 
 def script(code: str, given: str = PHYSICS) -> Any:
-    """What an expression is after a script has run."""
+    """Return the value of an expression after a script has run."""
     return json.loads(quickjs.Context().eval(f"{given}\nJSON.stringify({code})"))
 
 
 def can_of(radius: float, mass: float) -> Can:
-    """A can of thin sheet, as long as the page has it."""
+    """Return a can of thin sheet, as long as the page has it."""
     sheet = Can.sheet_metal(radius)
     return Can(radius, sheet.length, mass, sheet.inertia * mass / sheet.mass)
 
@@ -85,7 +86,7 @@ def require_agreement(cases: list[Case], within: float = AGREES) -> None:
 
 
 def random_cases(count: int) -> list[Case]:
-    """Settings of all that can be inside, in cans of all sizes and masses of the page.
+    """Return settings of all that can be inside, in cans of all sizes and masses of the page.
 
     Each has one time or more, not evenly spaced, and starts as the page offers: level, tilted,
     upside down, or anywhere. In wide cans thin liquids would be turbulent, which is refused.
@@ -119,71 +120,129 @@ def test_its_motions_are_those_of_exact_theory(count: int, within: float) -> Non
     require_agreement(random_cases(count), within)
 
 
+class Energies(NamedTuple):
+    """The energies [J] that the page tells of a motion, and its exact motion."""
+
+    told: dict[str, np.ndarray]
+    truth: Trajectory
+    size: float
+    """What two energies may differ by: the errors of the rates, which count squared."""
+
+
+@cache
+def energies(case: int) -> Energies:
+    """Return the energies of one of the random cases."""
+    setting, times = random_cases(ENERGY_CASES)[case]
+    samples = script(f"""(() => {{
+      const setting = {json.dumps(setting)};
+      const run = motion(setting, {times});
+      return run.phi.map((phi, k) => energies(run.it, setting.phi0, {{phi,
+        distance: run.distance[k], speed: run.speed[k], turning: run.turning[k]}}));
+    }})()""")
+    told = {name: np.array([sample[name] for sample in samples]) for name in ENERGIES}
+    truth = exact(scene_of(setting), times, setting["phi0"])
+    return Energies(told, truth, 1e-5 * (np.abs(told["all"]).max() + 1e-6))
+
+
+ENERGY_CASES = 14
+in_each_case = pytest.mark.parametrize("case", range(ENERGY_CASES))
+
+
 @pytest.mark.slow
-def test_its_energies_are_those_of_exact_theory() -> None:
-    """What moves is of the centre of mass; heat is what friction has taken."""
-    for setting, times in random_cases(14):
-        truth = exact(scene_of(setting), times, setting["phi0"])
-        scene = truth.scene
-        code = f"""(() => {{
-          const setting = {json.dumps(setting)};
-          const run = motion(setting, {times});
-          return run.phi.map((phi, k) => energies(run.it, setting.phi0, {{phi,
-            distance: run.distance[k], speed: run.speed[k], turning: run.turning[k]}}));
-        }})()"""
-        samples = script(code)
-        told = {name: np.array([sample[name] for sample in samples]) for name in ENERGIES}
-        kinetic = kinetic_energy(scene, truth)
-        potential = potential_energy(scene, truth)
-        total = scene.can.mass + scene.load.mass
-        moment = scene.load.moment
-        momentum_along = total * truth.u_dot - moment * np.cos(truth.phi) * truth.phi_dot
-        momentum_across = moment * np.sin(truth.phi) * truth.phi_dot
-        moving = (momentum_along**2 + momentum_across**2) / (2 * total)
-        start = exact(scene, [0.0], setting["phi0"])
-        heat = potential_energy(scene, start)[0] - potential - kinetic
-        size = 1e-5 * (np.abs(told["all"]).max() + 1e-6)
-        assert told["moving"] == pytest.approx(moving, abs=size), setting
-        assert told["moving"] + told["turning"] == pytest.approx(kinetic, abs=size), setting
-        assert told["heat"] == pytest.approx(heat, abs=size), setting
-        assert (told["heat"] >= -size).all()
-        assert (told["lifted"] >= 0).all()
+@in_each_case
+def test_the_energy_that_moves_is_that_of_the_centre_of_mass(case: int) -> None:
+    told, truth, size = energies(case)
+    total = truth.scene.can.mass + truth.scene.load.mass
+    moment = truth.scene.load.moment
+
+    along = total * truth.u_dot - moment * np.cos(truth.phi) * truth.phi_dot
+    across = moment * np.sin(truth.phi) * truth.phi_dot
+
+    assert told["moving"] == pytest.approx((along**2 + across**2) / (2 * total), abs=size)
+
+
+@pytest.mark.slow
+@in_each_case
+def test_what_moves_and_what_turns_are_the_kinetic_energy(case: int) -> None:
+    told, truth, size = energies(case)
+
+    kinetic = kinetic_energy(truth.scene, truth)
+
+    assert told["moving"] + told["turning"] == pytest.approx(kinetic, abs=size)
+
+
+@pytest.mark.slow
+@in_each_case
+def test_heat_is_what_friction_has_taken(case: int) -> None:
+    told, truth, size = energies(case)
+    setting, _ = random_cases(ENERGY_CASES)[case]
+    start = exact(truth.scene, [0.0], setting["phi0"])
+
+    kinetic = kinetic_energy(truth.scene, truth)
+    lost = potential_energy(truth.scene, start)[0] - potential_energy(truth.scene, truth) - kinetic
+
+    assert told["heat"] == pytest.approx(lost, abs=size)
+    assert (told["heat"] >= -size).all()
+
+
+@pytest.mark.slow
+@in_each_case
+def test_what_is_lifted_is_never_negative(case: int) -> None:
+    assert (energies(case).told["lifted"] >= 0).all()
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("inside", ["no friction", "ice"])
-def test_so_they_are_beside_a_separatrix(inside: str) -> None:
-    """Down to 1e-4 rad, nearer than anybody can let go: there an error grows 1e5 times."""
+def test_its_motions_are_those_of_theory_beside_a_separatrix(inside: str) -> None:
+    """It starts down to 1e-4 rad beside it, nearer than anybody can let go.
+
+    There an error grows 1e5 times.
+    """
     setting = {"incline": 0.1, "fill": 0.4, "inside": inside} | USUAL_CAN
     ends = scene_of(setting).separatrix()
     beside = [side * distance for side in (1, -1) for distance in (1e-2, 1e-3, 1e-4)]
     starts = [end + offset for end in ends for offset in beside]
+
     require_agreement([({**setting, "phi0": start}, [0.3, 1.0, 3.0]) for start in starts], 1e-7)
 
 
-def test_balanced_and_full_cans_are_those_of_theory() -> None:
-    level = {"incline": 0.0, "fill": 0.5, "phi0": math.pi} | USUAL_CAN
-    steep = {**level, "incline": 0.2, "inside": "no friction", "canMass": 0.0}
-    full = {"incline": 0.2, "fill": 1, "phi0": 1.0} | USUAL_CAN
-    settings = [steep]
-    settings += [{**level, "inside": inside} for inside in INSIDE]
-    settings += [{**full, "inside": inside} for inside in ("no friction", "ice")]
-    require_agreement([(setting, [0.0, 2.0]) for setting in settings])
+@pytest.mark.parametrize("inside", INSIDE)
+def test_a_balanced_can_on_level_ground_is_that_of_theory(inside: str) -> None:
+    setting = {"incline": 0.0, "fill": 0.5, "phi0": math.pi, "inside": inside} | USUAL_CAN
+
+    require_agreement([(setting, [0.0, 2.0])])
+
+
+def test_a_balanced_massless_can_on_an_incline_is_that_of_theory() -> None:
+    setting = {"incline": 0.2, "fill": 0.5, "phi0": math.pi, "inside": "no friction"} | USUAL_CAN
+
+    require_agreement([({**setting, "canMass": 0.0}, [0.0, 2.0])])
+
+
+@pytest.mark.parametrize("inside", ["no friction", "ice"])
+def test_a_full_can_is_that_of_theory(inside: str) -> None:
+    setting = {"incline": 0.2, "fill": 1, "phi0": 1.0, "inside": inside} | USUAL_CAN
+
+    require_agreement([(setting, [0.0, 2.0])])
 
 
 def test_an_empty_can_speeds_up_evenly() -> None:
-    """By the rolling of a body with the mass and the inertia of the can alone."""
+    """It rolls as a body with the mass and the inertia of the can alone."""
     setting = {"incline": 0.1, "fill": 0.5, "inside": "nothing", "phi0": 1.0} | USUAL_CAN
     wall = Can.sheet_metal()
     acceleration = wall.mass / wall.effective_mass * GRAVITY * math.sin(0.1)
+
     motion = script(f"motion({json.dumps(setting)}, [0.5, 2])")
+
     assert motion["distance"] == pytest.approx([acceleration / 8, 2 * acceleration], rel=1e-10)
     assert motion["normal"] == pytest.approx(2 * [wall.mass * GRAVITY * math.cos(0.1)])
 
 
 def test_its_constants_are_those_of_theory() -> None:
     names = "[LIQUIDS, LENGTH, GRAVITY, BEER, FILLS, THICKEST_LAYER, ONE_MODE]"
+
     liquids, length, gravity, beer, fills, *limits = script(names)
+
     assert liquids == {name: properties._asdict() for name, properties in LIQUIDS.items()}
     assert [length, gravity, beer] == [can.LENGTH, GRAVITY, can.BEER]
     assert tuple(fills) == slosh.FILLS
@@ -193,7 +252,7 @@ def test_its_constants_are_those_of_theory() -> None:
 
 @pytest.mark.slow
 def test_what_it_warns_of_are_the_numbers_of_theory() -> None:
-    """The share of the slowest mode, the tilt of the surface, and the slip rates that are valid."""
+    """They are the share of the slowest mode, the tilt of the surface, and the valid slip rates."""
     for setting, times in random_cases(14):
         if setting["inside"] not in LIQUIDS:
             continue
@@ -223,7 +282,7 @@ def test_what_it_warns_of_are_the_numbers_of_theory() -> None:
 
 
 def story(name: str) -> dict[str, str]:
-    """The settings of a link that the page offers."""
+    """Return the settings of a link that the page offers."""
     link = re.search(rf'href="#([^"]*)"\s*>{name}<', TEXT)
     assert link
     return dict(urllib.parse.parse_qsl(html.unescape(link[1])))
@@ -243,6 +302,7 @@ def story(name: str) -> dict[str, str]:
 def test_its_stories_take_the_times_that_the_lecture_has(name: str, can: str, row: str) -> None:
     time = re.search(row, LECTURE)
     assert time
+
     given = story(name)
     incline = math.radians(float(given["incline"]))
     starts = {"level": -incline, "tilted": math.radians(30), "upside down": math.pi}
@@ -256,7 +316,9 @@ def test_its_stories_take_the_times_that_the_lecture_has(name: str, can: str, ro
     decimals = len(time[1].partition(".")[2])
     half_a_digit = 0.5 * 10.0**-decimals
     around = [float(time[1]) - half_a_digit, float(time[1]) + half_a_digit]
+
     before, after = script(f"motion({json.dumps(setting)}, {around}).distance")
+
     assert before < 1 < after
 
 
@@ -291,7 +353,9 @@ def test_it_is_one_file_that_asks_for_nothing() -> None:
 
 def test_a_track_is_read_in_its_units_and_with_decimal_commas() -> None:
     table = "Time (ms);note;along [cm];phi [°]\r\n0;;5,0;90\r\n500;;7,5;45\r\n"
+
     track = script(f"readTrack({json.dumps(table)})", TRACK)
+
     assert track["distance"] == [[0, 0], [0.5, pytest.approx(0.025)]]
     assert track["phi"] == [[0, 90], [0.5, 45]]
 
@@ -329,13 +393,15 @@ def test_it_reads_a_track_as_read_track_does(text: str, tmp_path: pathlib.Path) 
     path = tmp_path / "can.txt"
     path.write_text(text, encoding="utf-8")
     track = read_track(path)
+
     time, distance = np.transpose(script(f"readTrack({json.dumps(text)})", TRACK)["distance"])
+
     assert time == pytest.approx(track.time, rel=1e-12)
     assert distance == pytest.approx(track.along - track.along[0], abs=1e-12)
 
 
 def test_it_finds_when_a_can_was_let_go() -> None:
-    """At 17 s, as the first line of the file says; to a tenth of the time that the can rolls."""
+    """It is at 17 s, as the file says; the bound is a tenth of the time that the can rolls."""
     track = script(f"readTrack({json.dumps(SYNTHETIC)})", TRACK)
     assert track["start"] == pytest.approx(17, abs=0.1)
 
@@ -354,10 +420,14 @@ def test_it_refuses_where_read_track_does(message: str) -> None:
         script(f"readTrack({json.dumps(text)})", TRACK)
 
 
-def test_its_names_and_units_are_those_of_read_track() -> None:
-    for name, (units, usual) in script("COLUMNS", TRACK).items():
-        assert (units, usual) == _COLUMNS[name]
+@pytest.mark.parametrize(("name", "units"), script("COLUMNS", TRACK).items())
+def test_its_names_and_units_are_those_of_read_track(name: str, units: list[Any]) -> None:
+    assert tuple(units) == _COLUMNS[name]
+
+
+def test_its_forms_of_titles_and_numbers_are_those_of_read_track() -> None:
     title, *numbers = script("[TITLE, POINT, COMMA, GROUPED].map(form => form.source)", TRACK)
+
     assert title == f"^{_TITLE.pattern}"
     assert numbers == [f"^{form.pattern}$" for form in (_POINT, _COMMA, _GROUPED)]
 
@@ -390,7 +460,7 @@ document.title = `${space.defaultPrevented} ${running}`;
 
 
 def shown(folder: pathlib.Path, code: str, link: str = "") -> str:
-    """What Chromium shows of the page after a script has run."""
+    """Return what Chromium shows of the page after a script has run."""
     chromium = shutil.which("chromium") or shutil.which("google-chrome")
     if not chromium:
         pytest.skip("no Chromium: `apt-get install chromium` brings one")
@@ -406,34 +476,65 @@ def element(page: str, name: str) -> str:
     return page.split(f'id="{name}"')[1].split(">", 1)[1].partition("</")[0]
 
 
-@pytest.mark.slow
-def test_a_browser_races_and_says_who_won(tmp_path: pathlib.Path) -> None:
-    page = shown(tmp_path, RACE)
-    verdict = element(page, "verdict")
+@pytest.fixture(scope="module")
+def raced(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """Return the page after two races, the second of which has water on 7.1 degrees."""
+    return shown(tmp_path_factory.mktemp("raced"), RACE)
+
+
+@pytest.fixture(scope="module")
+def verdict(raced: str) -> str:
+    return element(raced, "verdict")
+
+
+@pytest.fixture(scope="module")
+def first_time(verdict: str) -> str:
+    """Return the time [s] of the first can as it is told."""
     time = re.match(r"A \(water\) is first after ([\d.]+) s, B ([\d.]+) s, ", verdict)
     assert time, verdict
+    return time[1]
+
+
+@pytest.mark.slow
+def test_a_browser_says_who_was_guessed(verdict: str) -> None:
     assert verdict.endswith("Your guess was can B.")
-    around = [float(time[1]) - 6e-4, float(time[1]) + 6e-4]  # it is told to a thousandth
-    run = exact(
-        liquid("water", math.radians(7.1), 0.6, Can.sheet_metal()), around, math.radians(30)
-    )
+
+
+@pytest.mark.slow
+def test_a_browser_races_as_exact_theory(first_time: str) -> None:
+    scene = liquid("water", math.radians(7.1), 0.6, Can.sheet_metal())
+    around = [float(first_time) - 6e-4, float(first_time) + 6e-4]  # it is told to a thousandth
+
+    run = exact(scene, around, math.radians(30))
+
     assert run.distance[0] < 1 < run.distance[1]
-    assert "to an order of magnitude only" in page.split('id="limits"')[1]
-    results = page.split('id="results"')[1].split("</tbody>")[0]
-    assert results.count("<tr") == 8  # of both races
-    assert results.index(">1.550<") < results.index(f">{time[1]}<")
+
+
+@pytest.mark.slow
+def test_a_browser_says_how_far_a_liquid_is_right(raced: str) -> None:
+    assert "to an order of magnitude only" in raced.split('id="limits"')[1]
+
+
+@pytest.mark.slow
+def test_a_browser_lists_the_results_of_both_races(raced: str, first_time: str) -> None:
+    results = raced.split('id="results"')[1].split("</tbody>", maxsplit=1)[0]
+
+    assert results.count("<tr") == 8
+    assert results.index(">1.550<") < results.index(f">{first_time}<")
 
 
 @pytest.mark.slow
 def test_the_link_of_the_lecture_is_its_race(tmp_path: pathlib.Path) -> None:
-    """It names φ at the start alone, which then is how the cans start."""
+    """It names φ at the start alone, which is then how the cans start."""
     link = re.search(r"second of the\s+race\]\(live\.html(#[^)]*)\)", LECTURE)
     slides = re.search(r"beer slides, ¾ full \| ([\d.]+) s", LECTURE)
     frozen_to_it = re.search(r"beer frozen, ¾ full \| ([\d.]+) s", LECTURE)
     assert link
     assert slides
     assert frozen_to_it
+
     verdict = element(shown(tmp_path, FINISH, link[1]), "verdict")
+
     first, second = re.findall(r"([\d.]+) s", verdict)
     assert f"{float(first):.2f}" == slides[1]
     assert f"{float(second):.2f}" == frozen_to_it[1]
@@ -441,10 +542,12 @@ def test_the_link_of_the_lecture_is_its_race(tmp_path: pathlib.Path) -> None:
 
 @pytest.mark.slow
 def test_a_row_of_results_comes_when_its_can_arrives(tmp_path: pathlib.Path) -> None:
-    """Once each, whatever is shown again."""
+    """It comes once, whatever is shown again."""
     code = FINISH.replace("goTo(1)", "goTo(0.9); goTo(0.7); const early = results.length; goTo(1)")
     title = "document.title = [early, results.map((row) => row.can).join('')]"
+
     page = shown(tmp_path, f"{code}; goTo(0.5); goTo(1); {title}")
+
     assert "<title>3,ABCD</title>" in page
 
 
@@ -452,7 +555,9 @@ def test_a_row_of_results_comes_when_its_can_arrives(tmp_path: pathlib.Path) -> 
 def test_the_slowest_can_does_not_squeeze_the_curves_of_the_others(tmp_path: pathlib.Path) -> None:
     link = "#" + urllib.parse.urlencode(story("Honey and ice"))
     times = "lanes.map(({run}) => run.arrives).sort((one, two) => one - two)"
+
     page = shown(tmp_path, f"{FINISH}; document.title = [...{times}, latestShown]", link)
+
     title = page.split("<title>")[1].partition("</title>")[0]
     *others, slowest, shown_until = (float(number) for number in title.split(","))
     assert max(others) < shown_until < 1.5 * max(others) < slowest / 5
@@ -500,8 +605,9 @@ def test_it_draws_in_a_window_of_no_width(tmp_path: pathlib.Path) -> None:
 def test_a_link_with_a_bad_value_says_so(
     link: str, sentence: str, kept: str, tmp_path: pathlib.Path
 ) -> None:
-    """And the address keeps only what is allowed."""
+    """The address keeps only what is allowed."""
     page = shown(tmp_path, "document.title = location.search + location.hash", link)
+
     told = element(page, "wrong")
     assert told.startswith(sentence)
     assert bool(told) == bool(sentence)

@@ -1,5 +1,7 @@
-"""The MJCF: as a stock MuJoCo user finds it, missing, and edited, which is stepped as it stands, or
-is an error."""
+"""The MJCF as a stock MuJoCo user finds it, where a file is missing, and where one is edited.
+
+An edited file is stepped as it stands, or is an error.
+"""
 
 import math
 import pathlib
@@ -7,6 +9,7 @@ import re
 import shutil
 import warnings
 import xml.etree.ElementTree as ET
+from collections.abc import Callable
 from typing import NamedTuple
 
 import mujoco
@@ -65,7 +68,7 @@ def load(name: str) -> mujoco.MjModel:
 
 
 def places_of_phi(model: mujoco.MjModel) -> list[int]:
-    """Where in qpos the angles are that add up to phi, and in qvel their rates."""
+    """Return where qpos has the angles that add up to phi, and qvel their rates."""
     places = joint_addresses(model)
     return [places[name] for name in ("roll", "swing", "phi") if name in places]
 
@@ -96,35 +99,52 @@ def roll(model: mujoco.MjModel, key: str, duration: float) -> Roll:
     return Roll(np.array(times), phi, data)
 
 
+def start_of(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[float, float]:
+    """Return phi [rad] and phi_dot [rad/s] of a state."""
+    places = places_of_phi(model)
+    return float(data.qpos[places].sum()), float(data.qvel[places].sum())
+
+
+@pytest.mark.parametrize(("name", "key"), KEYS)
+def test_the_positions_of_a_keyframe_are_those_of_its_phi(name: str, key: str) -> None:
+    model = load(name)
+    data = at_key(model, key)
+
+    qpos, _ = initial_joints(joint_addresses(model), FILES[name], *start_of(model, data))
+
+    assert np.allclose(data.qpos, qpos, rtol=1e-11, atol=1e-15)  # the file has twelve digits
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(("name", "key"), KEYS)
 def test_keyframes_move_as_theory_says(name: str, key: str) -> None:
-    """For 2 s; the hoop until it hops."""
+    """They are followed for 2 s, and the hoop until it hops."""
     scene = FILES[name]
     model = load(name)
-    data = at_key(model, key)
-    phi0 = float(data.qpos[places_of_phi(model)].sum())
-    phi_dot0 = float(data.qvel[places_of_phi(model)].sum())
-    qpos, _ = initial_joints(joint_addresses(model), scene, phi0, phi_dot0)
-    assert np.allclose(data.qpos, qpos, rtol=1e-11, atol=1e-15)  # the file has twelve digits
+    start = start_of(model, at_key(model, key))
     hops = math.inf
     if name == "hoop":
-        hops = exact(scene, np.linspace(0, 2, 2_001), phi0, phi_dot0).rolls_until()
+        hops = exact(scene, np.linspace(0, 2, 2_001), *start).rolls_until()
 
     rolled = roll(model, key, 2.0)
 
     before = rolled.times <= hops
-    truth = exact(scene, rolled.times[before], phi0, phi_dot0)
+    truth = exact(scene, rolled.times[before], *start)
     assert np.abs(rolled.phi[before] - truth.phi).max() < PROMISE
     assert not any(warning.number for warning in rolled.end.warning)
 
 
 @pytest.mark.parametrize("name", FILES)
 def test_all_cans_that_roll_have_three_keyframes(name: str) -> None:
-    keys = {key for file, key in KEYS if file == name}
-    assert {"home", "equilibrium", "swing"} <= keys
+    assert {"home", "equilibrium", "swing"} <= {key for file, key in KEYS if file == name}
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_a_can_is_at_rest_at_phi_0_at_home(name: str) -> None:
     model = load(name)
+
     home = at_key(model, "home")
+
     assert not home.qpos[places_of_phi(model)].any()
     assert not home.qvel[places_of_phi(model)].any()
 
@@ -139,8 +159,12 @@ def test_a_file_has_one_worldbody_and_one_element_a_line(path: pathlib.Path) -> 
 
 @pytest.mark.parametrize(("key", "duration", "height"), [("hop", 0.43, 1e-6), ("push", 0.3, 0.02)])
 def test_the_hoop_hops(key: str, duration: float, height: float) -> None:
-    """By 15 um let go, by a radius of 33 mm pushed; a penetration would be negative."""
+    """It hops by 15 um if it is let go, and by a radius of 33 mm if it is pushed.
+
+    A penetration would be negative.
+    """
     end = roll(load("hoop"), key, duration).end
+
     assert end.joint("lift").qpos[0] > height
 
 
@@ -150,38 +174,68 @@ def test_what_a_viewer_opens_is_made_from_mechanics_and_looks(name: str) -> None
     assert (OWN / f"{name}.xml").read_text() == templates.text(name, OWN)
 
 
-def test_the_readme_lists_the_parameters_and_what_can_be_named() -> None:
-    """Its table has the element, the attribute and the files of each number that mjbeer writes.
-
-    Its lists have all names of joints, cameras, sensors and keyframes.
-    """
+@pytest.fixture(scope="module")
+def readme() -> dict[str, str]:
+    """Return the sections of the README by their headings."""
     sections = (OWN / "README.md").read_text().split("\n## ")
-    told = {text.partition("\n")[0]: text for text in sections}
+    return {text.partition("\n")[0]: text for text in sections}
+
+
+class Parameter(NamedTuple):
+    """A number of the README's table: its element, its attribute and the files that have it."""
+
+    element: str
+    attribute: str
+    files: str
+
+
+@pytest.fixture(scope="module")
+def parameters(readme: dict[str, str]) -> list[Parameter]:
+    """Return the README's table of parameters; a row may have several attributes."""
     table = re.findall(
-        r"^\| `(.*?)` \| `(.*?)` \|.*\| ([^|]*) \|$", told["Parameters"], re.MULTILINE
+        r"^\| `(.*?)` \| `(.*?)` \|.*\| ([^|]*) \|$", readme["Parameters"], re.MULTILINE
     )
-    rows = [
-        (element, attribute, files)
+    return [
+        Parameter(element, attribute, files)
         for element, attributes, files in table
         for attribute in attributes.split("`, `")
     ]
-    for name, (scene, rolling) in MECHANICS.items():
-        written = {
-            (element, attribute)
-            for element, attribute in ModelNumbers(scene, Setting(rolling)).parameters
-        }
-        here = {(element, attribute) for element, attribute, files in rows if fits(name, files)}
-        assert here == written, name
-    for section, kind in (
+
+
+@pytest.mark.parametrize("name", MECHANICS)
+def test_the_readme_lists_each_number_that_mjbeer_writes(
+    name: str, parameters: list[Parameter]
+) -> None:
+    scene, rolling = MECHANICS[name]
+
+    written = set(ModelNumbers(scene, Setting(rolling)).parameters)
+
+    listed = {
+        (parameter.element, parameter.attribute)
+        for parameter in parameters
+        if fits(name, parameter.files)
+    }
+    assert listed == written
+
+
+@pytest.mark.parametrize("name", FILES)
+@pytest.mark.parametrize(
+    ("section", "kind"),
+    [
         ("Joints", "joints"),
         ("Cameras", "cameras"),
         ("Sensors", "sensors"),
         ("Keyframes", "keys"),
-    ):
-        names = set(re.findall("`([^`]*)`", told[section]))
-        for name in FILES:
-            spec = mujoco.MjSpec.from_file(str(OWN / f"{name}.xml"))
-            assert {named.name for named in getattr(spec, kind)} <= names, (name, kind)
+    ],
+)
+def test_the_readme_lists_what_can_be_named(
+    section: str, kind: str, name: str, readme: dict[str, str]
+) -> None:
+    listed = set(re.findall("`([^`]*)`", readme[section]))
+
+    spec = mujoco.MjSpec.from_file(str(OWN / f"{name}.xml"))
+
+    assert {named.name for named in getattr(spec, kind)} <= listed
 
 
 def fits(name: str, files: str) -> bool:
@@ -307,60 +361,104 @@ def edit(folder: pathlib.Path, file: str, old: str, new: str) -> None:
 
 
 def shown_by(file: str) -> tuple[Scene, Rolling]:
-    """A scene that shows a file, and how it rolls."""
+    """Return a scene that shows a file, and how it rolls."""
     folder, _, name = file.partition("/")
     return MECHANICS[name] if folder == "mechanics" else (sliding(can=METAL), "equality")
 
 
 def accelerations(model: mujoco.MjModel, scene: Scene) -> np.ndarray:
-    """Of a state of rolling, and of one that is twisted."""
+    """Return the accelerations at the start, of which each rate is multiplied by its place."""
     data = at_key(model, "start")
     data.qvel[:] *= np.arange(1, model.nv + 1)
     mujoco.mj_forward(model, data)
     return data.qacc.copy()
 
 
+START = {"phi0": 0.7, "phi_dot0": 3.0}
+NAMES_THE_PARAMETER = "mjbeer writes a scene's own numbers into"
+HARMLESS = [name for name, change in EDITS.items() if change.outcome == SAME]
+HARMFUL = [name for name, change in EDITS.items() if change.outcome != SAME]
+# What has no joint to compare or moves nothing in the state of `accelerations`.
+UNMOVED = ("no damping", "dry friction", "limit", "further joint")
+MOVED = [name for name in HARMFUL if EDITS[name].outcome == ERROR and name not in UNMOVED]
+
+
+class Edited(NamedTuple):
+    """A folder in which a file is edited, and a scene that shows the file."""
+
+    scene: Scene
+    rolling: Rolling
+    path: str
+    """Of the file, as a regular expression."""
+    exported: pathlib.Path
+    """Where the scene is exported to."""
+
+    def run(self) -> Run:
+        return simulate(self.scene, 0.02, **START, rolling=self.rolling)
+
+    def export(self) -> None:
+        export(self.scene, self.exported, **START, rolling=self.rolling)
+
+
+@pytest.fixture
+def edited(name: str, copy: pathlib.Path, tmp_path: pathlib.Path) -> Edited:
+    """Make the edit of a name in a copy of the folder, which mjbeer then reads."""
+    change = EDITS[name]
+    edit(copy, change.file, change.old, change.new)
+    scene, rolling = shown_by(change.file)
+    path = re.escape(str(copy / f"{change.file}.xml"))
+    return Edited(scene, rolling, path, tmp_path / "model.xml")
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("name", EDITS)
-def test_an_edit_drives_the_motion_or_is_an_error(
-    name: str, copy: pathlib.Path, tmp_path: pathlib.Path
+@pytest.mark.parametrize("name", HARMLESS)
+def test_an_edit_that_changes_no_motion_is_taken_without_a_word(edited: Edited) -> None:
+    right = simulate(edited.scene, 0.02, **START, rolling=edited.rolling, mjcf=OWN)
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        run = edited.run()
+        edited.export()
+        build(edited.scene, edited.rolling, visuals=True)
+        specify(edited.scene, edited.rolling)
+
+    assert run.phi.tobytes() == right.phi.tobytes()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("make", [Edited.run, Edited.export])
+@pytest.mark.parametrize("name", HARMFUL)
+def test_an_edit_that_changes_the_motion_ends_runs_and_exports(
+    name: str, make: Callable[[Edited], object], edited: Edited
 ) -> None:
-    """Runs and exports end with it; `build` and `specify` warn of it, and have it."""
-    file, old, new, outcome = EDITS[name]
-    scene, rolling = shown_by(file)
-    start = {"phi0": 0.7, "phi_dot0": 3.0}
-    ordinary = build(scene, rolling, **start, mjcf=OWN)
-    right = simulate(scene, 0.02, **start, rolling=rolling, mjcf=OWN).phi
-    edit(copy, file, old, new)
+    message = f"^{edited.path} ({WRONG}|gives the joints|has other numbers)"
 
-    def run() -> Run:
-        return simulate(scene, 0.02, **start, rolling=rolling)
+    with pytest.raises(TemplateError, match=message) as caught:
+        make(edited)
 
-    def write() -> None:
-        export(scene, tmp_path / "model.xml", **start, rolling=rolling)
+    assert (NAMES_THE_PARAMETER in str(caught.value)) == (EDITS[name].outcome == PARAMETER)
 
-    if outcome == SAME:
-        with warnings.catch_warnings():
-            warnings.simplefilter("error")
-            write()
-            build(scene, rolling, visuals=True)
-            specify(scene, rolling)
-            assert run().phi.tobytes() == right.tobytes()
-        return
-    path = re.escape(str(copy / f"{file}.xml"))
-    message = f"^{path} ({WRONG}|gives the joints|has other numbers)"
-    for make in (run, write):
-        with pytest.raises(TemplateError, match=message) as caught:
-            make()
-        names_the_parameter = "mjbeer writes a scene's own numbers into" in str(caught.value)
-        assert names_the_parameter == (outcome == PARAMETER)
-    with pytest.warns(UntrustedWarning, match=f"^{path} "):
-        specify(scene, rolling)
-    with pytest.warns(UntrustedWarning, match=f"^{path} "):
-        model = build(scene, rolling, **start)
-    if outcome == ERROR and name not in ("no damping", "dry friction", "limit", "further joint"):
-        edited = accelerations(model, scene)
-        assert not np.allclose(edited, accelerations(ordinary, scene), rtol=1e-9)
+
+@pytest.mark.slow
+@pytest.mark.parametrize("make", [specify, build])
+@pytest.mark.parametrize("name", HARMFUL)
+def test_a_model_warns_of_an_edit_that_changes_the_motion(
+    make: Callable[[Scene, Rolling], object], edited: Edited
+) -> None:
+    with pytest.warns(UntrustedWarning, match=f"^{edited.path} "):
+        make(edited.scene, edited.rolling)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", MOVED)
+def test_a_model_has_the_edit_that_it_warns_of(edited: Edited) -> None:
+    ordinary = build(edited.scene, edited.rolling, **START, mjcf=OWN)
+
+    with pytest.warns(UntrustedWarning, match=f"^{edited.path} "):
+        model = build(edited.scene, edited.rolling, **START)
+
+    found = accelerations(model, edited.scene)
+    assert not np.allclose(found, accelerations(ordinary, edited.scene), rtol=1e-9)
 
 
 METRES = 'joint1="slide" joint2="roll" polycoef="0 0.033 0 0 0"'
@@ -368,7 +466,7 @@ ANGLES = 'joint1="roll" joint2="slide" polycoef="0 30.303030303 0 0 0"'
 
 
 def slip_from(text: str, key: str) -> float:
-    """The largest slip [m] in two seconds of plain mj_step from a keyframe of an MJCF text."""
+    """Return the largest slip [m] in two seconds of plain mj_step from a keyframe of a text."""
     model = mujoco.MjModel.from_xml_string(text)
     data = at_key(model, key)
     sensor = data.sensor("slip").data
@@ -381,18 +479,19 @@ def slip_from(text: str, key: str) -> float:
 
 @pytest.mark.parametrize("name", ["frozen_equality", "sliding_equality"])
 def test_an_equality_in_angles_needs_no_flag(name: str) -> None:
-    """Without the flags it slips by what the files say, and a row in metres 1000 times as far."""
+    """Without the flags it slips by what the files say; a row in metres slips 1000 times that."""
     text = (OWN / "mechanics" / f"{name}.xml").read_text()
     assert ANGLES in text
     without_flags = text.replace('diagexact="enable" refsafe="disable" ', "")
     assert without_flags != text
+
     assert slip_from(text, "swing") < 3e-10
     assert 1e-9 < slip_from(without_flags, "swing") < 4.2e-9
     assert slip_from(without_flags.replace(ANGLES, METRES), "swing") > 1e-6
 
 
 def test_an_equality_as_usually_written_hardly_rolls() -> None:
-    """In metres and with MuJoCo's own softness, on the roll-down, which is 89 radii long."""
+    """It is in metres and has MuJoCo's own softness, on a roll-down that is 89 radii long."""
     text = (OWN / "mechanics" / "frozen_equality.xml").read_text()
     soft = re.sub(r'solref="0.0005 1"\s+solimp="0.9999 0.9999"', "", text.replace(ANGLES, METRES))
     usual = soft.replace('diagexact="enable"', "")
@@ -414,13 +513,14 @@ def test_a_contact_needs_its_options(name: str, slip: float, slip_without: float
     )
     without_options, count = re.subn(options, "", text)
     assert count == 2
+
     # In metres, to about the one digit that the comments show.
     assert slip_from(text, "swing") == pytest.approx(slip, rel=0.2)
     assert slip_from(without_options, "swing") == pytest.approx(slip_without, rel=0.2)
 
 
 def places_from(text: str, key: str) -> np.ndarray:
-    """The places and turns of a free can in two seconds from a keyframe, shape (samples, nq)."""
+    """Return where a free can is in two seconds from a keyframe, shape (samples, nq)."""
     model = mujoco.MjModel.from_xml_string(text)
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, model.key(key).id)
@@ -432,12 +532,13 @@ def places_from(text: str, key: str) -> np.ndarray:
 
 
 def test_a_lying_can_needs_its_options() -> None:
-    """What the comment in the file says: how far the can slides instead of rolling."""
+    """It slides instead of rolling by as much as the comment in the file says."""
     text = (OWN / "mechanics" / "lying.xml").read_text()
     without_options, count = re.subn(
         r'cone="elliptic" impratio="100"|<flag refsafe="disable"/>', "", text
     )
     assert count == 2
+
     for file, expected in ((text, 2.9e-8), (without_options, 1.05e-7)):
         places = places_from(file, "swing")
         along = places[:, 0] * np.cos(np.radians(10)) - places[:, 2] * np.sin(np.radians(10))
@@ -447,10 +548,11 @@ def test_a_lying_can_needs_its_options() -> None:
 
 
 def test_a_standing_can_needs_its_cone() -> None:
-    """What the comment in the file says: how far the can creeps, to the one digit it shows."""
+    """It creeps by as much as the comment in the file says, to the one digit that is there."""
     text = (OWN / "mechanics" / "standing.xml").read_text()
     pyramidal = text.replace('cone="elliptic"', "")
     assert pyramidal != text
+
     assert np.ptp(places_from(text, "slosh")[:, 0]) == pytest.approx(2.4e-5, rel=0.2)
     assert np.ptp(places_from(pyramidal, "slosh")[:, 0]) == pytest.approx(4.8e-5, rel=0.2)
 
@@ -458,8 +560,10 @@ def test_a_standing_can_needs_its_cone() -> None:
 def test_a_constraint_that_is_softer_is_stepped_as_it_stands(copy: pathlib.Path) -> None:
     """Its accelerations are those of rolling, and what it creeps shows in the run."""
     edit(copy, "mechanics/frozen_contact", 'solimp="0.9999 0.9999"', 'solimp="0.9 0.9"')
+
     hard = simulate(frozen(), 0.5, 1.0, rolling="contact", mjcf=OWN)
     soft = simulate(frozen(), 0.5, 1.0, rolling="contact")
+
     assert np.abs(soft.slip).max() > 100 * np.abs(hard.slip).max()
 
 
@@ -490,8 +594,11 @@ LATE = {
 }
 
 
+@pytest.mark.parametrize("times", [None, [0.1, 3.0]], ids=["all steps", "two times"])
 @pytest.mark.parametrize("name", LATE)
-def test_an_edit_that_acts_late_is_an_error(name: str, copy: pathlib.Path) -> None:
+def test_an_edit_that_acts_late_is_an_error(
+    name: str, times: list[float] | None, copy: pathlib.Path
+) -> None:
     """A short run, in which it does not act, is no error."""
     for change in LATE[name]:
         edit(copy, change.file, change.old, change.new)
@@ -499,11 +606,11 @@ def test_an_edit_that_acts_late_is_an_error(name: str, copy: pathlib.Path) -> No
     _, rolling = shown_by(edited)
     scene = sliding(can=METAL, damping=1e-4)
     simulate(scene, 0.02, 1.0, rolling=rolling)
+
     path = re.escape(str(copy / f"{edited}.xml"))
     message = f"^{path} ({WRONG}|lets geoms touch other).* in a state of this run$"
-    for times in (None, [0.1, 3.0]):
-        with pytest.raises(TemplateError, match=message):
-            simulate(scene, 3.0, 1.0, rolling=rolling, times=times)
+    with pytest.raises(TemplateError, match=message):
+        simulate(scene, 3.0, 1.0, rolling=rolling, times=times)
 
 
 def test_an_edit_that_changes_little_is_an_error(copy: pathlib.Path) -> None:
@@ -513,12 +620,19 @@ def test_an_edit_that_changes_little_is_an_error(copy: pathlib.Path) -> None:
         simulate(sliding(can=METAL), 1.0, 1.0, rolling="equality")
 
 
-def test_the_shipped_files_are_those_whose_runs_need_no_check(copy: pathlib.Path) -> None:
-    """`make templates` writes their digests. A file with a comment more is another one."""
+def test_the_digests_are_those_of_the_shipped_files() -> None:
+    """`make templates` writes them."""
     assert check.SHIPPED.read_text() == templates.digests(OWN)
-    for scene, rolling in MECHANICS.values():
-        assert not check.is_edited(ModelNumbers(scene, Setting(rolling, mjcf=OWN)))
+
+
+@pytest.mark.parametrize(("scene", "rolling"), MECHANICS.values(), ids=MECHANICS)
+def test_runs_of_a_shipped_file_need_no_check(scene: Scene, rolling: Rolling) -> None:
+    assert not check.is_edited(ModelNumbers(scene, Setting(rolling, mjcf=OWN)))
+
+
+def test_a_file_with_one_comment_more_is_another_one(copy: pathlib.Path) -> None:
     edit(copy, EQUALITY, "</mujoco>", "<!-- more --></mujoco>")
+
     assert check.is_edited(ModelNumbers(sliding(can=METAL), Setting("equality")))
 
 
@@ -527,13 +641,9 @@ def test_all_files_move_as_theory_says() -> None:
         assert check_file(OWN, scene.attachment, rolling) is None, name
 
 
-@pytest.mark.parametrize("file", ["mechanics/sliding_equality", "mechanics/included"])
-def test_a_file_that_is_edited_between_two_calls_is_read_again(
-    file: str, copy: pathlib.Path
-) -> None:
-    """Or one that it includes: by runs, and by models, whose warning goes once the file is
-    restored."""
-    scene = sliding(can=METAL)
+@pytest.fixture
+def rewritten(file: str, copy: pathlib.Path) -> pathlib.Path:
+    """Return the path of a mechanics file, or of one that it includes from now on."""
     path = copy / f"{file}.xml"
     mechanics = copy / "mechanics" / "sliding_equality.xml"
     if path != mechanics:
@@ -541,43 +651,89 @@ def test_a_file_that_is_edited_between_two_calls_is_read_again(
         (part,) = re.findall(r"<equality>.*</equality>", text, re.DOTALL)
         path.write_text(f"<mujoco>{part}</mujoco>")
         mechanics.write_text(text.replace(part, '<include file="included.xml"/>'))
+    return path
+
+
+itself_or_what_it_includes = pytest.mark.parametrize(
+    "file", ["mechanics/sliding_equality", "mechanics/included"]
+)
+MORE = '<equality><joint joint1="swing"/></equality></mujoco>'
+MORE_ROWS = r"sliding_equality\.xml gives \d+ rows of constraints"
+
+
+@itself_or_what_it_includes
+def test_a_run_reads_a_file_again_that_is_edited_between_two_calls(rewritten: pathlib.Path) -> None:
+    scene = sliding(can=METAL)
+    before = rewritten.read_text()
     right = simulate(scene, 0.02, 1.0, rolling="equality")
-    build(scene, "equality")
-    before = path.read_text()
-    path.write_text(
-        before.replace("</mujoco>", '<equality><joint joint1="swing"/></equality></mujoco>')
-    )
-    with pytest.raises(TemplateError, match=r"sliding_equality\.xml gives \d+ rows of constraints"):
+
+    rewritten.write_text(before.replace("</mujoco>", MORE))
+    with pytest.raises(TemplateError, match=MORE_ROWS):
         simulate(scene, 0.02, 1.0, rolling="equality")
-    with pytest.warns(
-        UntrustedWarning, match=r"sliding_equality\.xml gives \d+ rows of constraints"
-    ):
+
+    rewritten.write_text(before)
+    assert simulate(scene, 0.02, 1.0, rolling="equality").phi.tobytes() == right.phi.tobytes()
+
+
+@itself_or_what_it_includes
+def test_a_model_reads_a_file_again_that_is_edited_between_two_calls(
+    rewritten: pathlib.Path,
+) -> None:
+    """Its warning goes once the file is restored."""
+    scene = sliding(can=METAL)
+    before = rewritten.read_text()
+    build(scene, "equality")
+
+    rewritten.write_text(before.replace("</mujoco>", MORE))
+    with pytest.warns(UntrustedWarning, match=MORE_ROWS):
         build(scene, "equality")
-    path.write_text(before)
+
+    rewritten.write_text(before)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         build(scene, "equality")
-    assert simulate(scene, 0.02, 1.0, rolling="equality").phi.tobytes() == right.phi.tobytes()
 
 
 def test_a_mesh_that_is_edited_between_two_calls_is_read_again(copy: pathlib.Path) -> None:
     before = build(sliding(can=METAL), "equality", visuals=True).nmeshvert
+
     shutil.copy(copy / "assets" / "tab.obj", copy / "assets" / "can.obj")
+
     assert build(sliding(can=METAL), "equality", visuals=True).nmeshvert != before
 
 
-def test_a_relative_folder_is_that_of_the_call(
+@pytest.fixture
+def other_folder(
     copy: pathlib.Path, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """After `chdir` it is another one, but not for a run that was made before."""
-    (tmp_path / "other").mkdir()
-    shutil.copytree(copy, tmp_path / "other" / "mjcf")
+) -> pathlib.Path:
+    """Return a folder whose mjcf is edited; the one that the process is in has one that is not."""
+    other = tmp_path / "other"
+    other.mkdir()
+    shutil.copytree(copy, other / "mjcf")
     damped = EDITS["damped joint"]
-    edit(tmp_path / "other" / "mjcf", damped.file, damped.old, damped.new)
+    edit(other / "mjcf", damped.file, damped.old, damped.new)
     monkeypatch.chdir(tmp_path)
+    return other
+
+
+def test_a_run_keeps_the_relative_folder_of_its_call(
+    other_folder: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """`chdir` does not make the folder another one for a run that was made before."""
     run = simulate(sliding(), 0.02, 1.0, mjcf="mjcf")
-    monkeypatch.chdir("other")
+
+    monkeypatch.chdir(other_folder)
+
     assert run.error_estimate < 1e-6
+
+
+def test_after_chdir_a_relative_folder_is_another_one(
+    other_folder: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    simulate(sliding(), 0.02, 1.0, mjcf="mjcf")
+
+    monkeypatch.chdir(other_folder)
+
     with pytest.raises(
         TemplateError, match=r"other/mjcf/mechanics/sliding_reduced\.xml gives phi an acc"
     ):
@@ -587,11 +743,13 @@ def test_a_relative_folder_is_that_of_the_call(
 def test_a_folder_of_one_s_own_has_looks_of_its_own(
     copy: pathlib.Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """By the environment, or by a parameter."""
+    """The environment names it, or a parameter."""
     colour = EDITS["colour"]
     edit(copy, colour.file, colour.old, colour.new)
     green = [0, 1, 0, 1]
+
     assert list(build(SCENES["sliding"], visuals=True).mat("beer").rgba) == green
+
     monkeypatch.delenv("MJBEER_MJCF")
     assert list(build(SCENES["sliding"], visuals=True).mat("beer").rgba) != green
     assert list(build(SCENES["sliding"], visuals=True, mjcf=copy).mat("beer").rgba) == green
@@ -605,8 +763,10 @@ TURNED = np.random.default_rng(5).normal(size=(200, 4))
 
 @pytest.mark.parametrize("fill", [None, 0.05, 0.1, 0.2, 0.5, 0.8, 0.97])
 def test_what_is_drawn_of_a_standing_can_s_beer_stays_inside_the_wall(fill: float | None) -> None:
-    """However the pendulum hangs: the file that a viewer opens, and a can of any fill, from which
-    it is `refill`ed."""
+    """It does however the pendulum hangs.
+
+    This is so of the file that a viewer opens, and of a half-full can that is `refill`ed.
+    """
     model = load("standing") if fill is None else build(standing(fill=0.5), visuals=True)
     if fill is not None:
         refill(model, standing(fill=fill), prefix="")
@@ -614,9 +774,11 @@ def test_what_is_drawn_of_a_standing_can_s_beer_stays_inside_the_wall(fill: floa
     radius, half_length, _ = model.geom("can").size
     length = 2 * half_length
     turn = np.linspace(0, 2 * np.pi, 33)
+
     for quat in (*np.eye(4)[:1], *TURNED):
         data.joint("slosh1").qpos[:] = quat / np.linalg.norm(quat)
         mujoco.mj_kinematics(model, data)
+
         for name in ("beer", "beer_top"):
             drawn = data.geom(name)
             wide, half, _ = model.geom(name).size
