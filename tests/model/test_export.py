@@ -13,6 +13,7 @@ import pathlib
 import re
 import xml.etree.ElementTree as ET
 from collections.abc import Callable
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
@@ -171,43 +172,97 @@ def moved_aside(model: mujoco.MjModel) -> mujoco.MjData:
     return data
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("portable", [False, True])
-@pytest.mark.parametrize(("name", "rolling"), CASES)
-def test_an_export_is_the_model_and_moves_exactly(
-    name: str, rolling: Rolling, portable: bool, tmp_path: pathlib.Path
-) -> None:
+class Exported(NamedTuple):
+    """An export: its file, the model that MuJoCo reads from it, and what it is an export of."""
+
+    path: pathlib.Path
+    model: mujoco.MjModel
+    scene: Scene
+    rolling: Rolling
+    timestep: float
+
+    def end(self) -> Coordinates:
+        """Return the state after a second."""
+        return moved(self.model, self.scene, START, 1.0)
+
+
+@pytest.fixture
+def exported(name: str, rolling: Rolling, portable: bool, tmp_path: pathlib.Path) -> Exported:
+    """Export a scene, portably and plainly or in full."""
     scene = SCENES[name]
     path = tmp_path / "model.xml"
     timestep = others.timestep(name)
     how = {"timestep": timestep, "friction": FRICTION, "portable": portable}
-
     export(scene, path, *START, rolling, **how, looks="plain" if portable else "full")
+    return Exported(path, mujoco.MjModel.from_xml_path(str(path)), scene, rolling, timestep)
 
-    text = path.read_text()
+
+each_case = pytest.mark.parametrize(("name", "rolling"), CASES)
+portable_or_not = pytest.mark.parametrize("portable", [False, True])
+portable_only = pytest.mark.parametrize("portable", [True])
+full_only = pytest.mark.parametrize("portable", [False])
+
+
+@portable_or_not
+@each_case
+def test_an_export_is_one_file_and_says_what_wrote_it(exported: Exported) -> None:
+    text = exported.path.read_text()
+
     assert not re.search(r"\b(file|\w+dir)=|<include", text)
-    assert f"Written by mjbeer: rolling={rolling!r}" in text
-    read = mujoco.MjModel.from_xml_path(str(path))
-    after = moved(read, scene, START, 1.0)
-    assert distance(after, exact(scene, after.time, *START), scene) < TOLERANCE[rolling]
-    if not portable:
-        setting = Setting(rolling, timestep=timestep, friction=FRICTION)
-        spec = rolling_spec(scene, setting, visuals=True)
-        add_start(spec, scene, *START)
-        shown = spec.compile()
-        assert_same(shown, path)
-        # A hundredth of what RK4 misses, 4e-8 rad.
-        assert distance(after, moved(shown, scene, START, 1.0), scene) < 4e-10
-        return
-    shown = rolling_spec(scene, Setting(rolling), visuals=True).compile()
-    for camera in ("side", "quarter"):  # they were in a frame
-        sight = read.cam_mat0[read.camera(camera).id]
+    assert f"Written by mjbeer: rolling={exported.rolling!r}" in text
+
+
+@pytest.mark.slow
+@portable_or_not
+@each_case
+def test_an_export_moves_as_exact_theory(exported: Exported) -> None:
+    end = exported.end()
+
+    truth = exact(exported.scene, end.time, *START)
+    assert distance(end, truth, exported.scene) < TOLERANCE[exported.rolling]
+
+
+@pytest.mark.slow
+@full_only
+@each_case
+def test_a_full_export_is_the_model_that_is_shown_and_moves_as_it_does(exported: Exported) -> None:
+    """They are apart by a hundredth of what RK4 misses, 4e-8 rad, at most."""
+    setting = Setting(exported.rolling, timestep=exported.timestep, friction=FRICTION)
+    spec = rolling_spec(exported.scene, setting, visuals=True)
+    add_start(spec, exported.scene, *START)
+
+    shown = spec.compile()
+
+    assert_same(shown, exported.path)
+    end = moved(shown, exported.scene, START, 1.0)
+    assert distance(exported.end(), end, exported.scene) < 4e-10
+
+
+@portable_only
+@each_case
+def test_a_portable_export_has_the_cameras_of_the_model_that_is_shown(exported: Exported) -> None:
+    """In that model they are in a frame."""
+    shown = rolling_spec(exported.scene, Setting(exported.rolling), visuals=True).compile()
+
+    for camera in ("side", "quarter"):
+        sight = exported.model.cam_mat0[exported.model.camera(camera).id]
         expected = shown.cam_mat0[shown.camera(camera).id]
         assert np.allclose(sight, expected, rtol=0, atol=1e-12)  # products of five rotations
-    root = ET.parse(path).getroot()
-    assert not re.search(r"diagexact|colorspace|<frame", text)
+
+
+@portable_only
+@each_case
+def test_a_portable_export_has_nothing_that_older_readers_do_not_know(exported: Exported) -> None:
+    root = ET.parse(exported.path).getroot()
+
+    assert not re.search(r"diagexact|colorspace|<frame", exported.path.read_text())
     assert not [light for light in root.iter("light") if "type" in light.attrib]
-    for body in root.iter("body"):
+
+
+@portable_only
+@each_case
+def test_each_body_of_a_portable_export_has_a_mass_inertias_and_a_joint(exported: Exported) -> None:
+    for body in ET.parse(exported.path).getroot().iter("body"):
         inertial = body.find("inertial")
         assert inertial is not None
         numbers = [inertial.attrib["mass"], *inertial.attrib["diaginertia"].split()]
@@ -219,70 +274,131 @@ def test_an_export_is_the_model_and_moves_exactly(
 def test_a_portable_export_has_damping_as_one_number(
     rolling: Rolling, tmp_path: pathlib.Path
 ) -> None:
-    """Which is all that MuJoCo 3.3 takes."""
+    """MuJoCo 3.3 takes no more than that."""
     path = tmp_path / "model.xml"
+
     export(sliding(can=METAL, damping=1 / 3), path, *START, rolling, portable=True)
+
     damper = "fixed[@name='damper']" if rolling == "reduced" else "joint[@name='swing']"
     (element,) = ET.parse(path).getroot().iterfind(f".//{damper}")
     assert float(element.attrib["damping"]) == pytest.approx(1 / 3, rel=DIGITS)
 
 
-@pytest.mark.parametrize(
+class BothLooks(NamedTuple):
+    """A plain and a full export of a scene."""
+
+    folder: pathlib.Path
+    plain: mujoco.MjModel
+    full: mujoco.MjModel
+
+
+@pytest.fixture
+def both_looks(scene: Scene | Standing, tmp_path: pathlib.Path) -> BothLooks:
+    models = {}
+    for looks in LOOKS:
+        path = tmp_path / f"{looks}.xml"
+        export(scene, path, looks=looks)
+        models[looks] = mujoco.MjModel.from_xml_path(str(path))
+    return BothLooks(tmp_path, **models)
+
+
+each_shape = pytest.mark.parametrize(
     "scene",
     [*SCENES.values(), standing(modes=5), frozen(fill=1.0), sliding(fill=0.01), standing(fill=0.9)],
     ids=repr,
 )
-def test_a_plain_export_is_short_and_has_the_mechanics_of_a_full_one(
-    scene: Scene | Standing, tmp_path: pathlib.Path
-) -> None:
+
+
+@each_shape
+@pytest.mark.parametrize("looks", LOOKS)
+def test_the_numbers_of_an_export_have_the_same_digits(looks: str, both_looks: BothLooks) -> None:
+    comment, rest = (both_looks.folder / f"{looks}.xml").read_text().split("-->")
+
+    numbers = re.findall(r"[\d.]+", rest)
+
+    digits = [len(number.replace(".", "").lstrip("0")) for number in numbers]
+    assert "Written by mjbeer" in comment
+    assert max(digits) == export_module.DIGITS
+
+
+@each_shape
+def test_a_plain_export_is_short(both_looks: BothLooks) -> None:
     """Its size was 398 kB, of which 390 kB were meshes."""
-    models = []
-    for looks in LOOKS:
-        path = tmp_path / f"{looks}.xml"
-        export(scene, path, looks=looks)
-        models.append(mujoco.MjModel.from_xml_path(str(path)))
-        comment, rest = path.read_text().split("-->")
-        assert "Written by mjbeer" in comment
-        numbers = re.findall(r"[\d.]+", rest)
-        digits = [len(number.replace(".", "").lstrip("0")) for number in numbers]
-        assert max(digits) == export_module.DIGITS
-    plain, full = models
-    assert (tmp_path / "plain.xml").stat().st_size < 12e3
+    path = both_looks.folder / "plain.xml"
+
+    assert path.stat().st_size < 12e3
     # A 1e-17 would be the rounding of 0.
-    assert not re.search(r"e-1[6-9]", (tmp_path / "plain.xml").read_text())
-    assert plain.nmesh <= 1
-    assert full.nmesh > plain.nmesh
+    assert not re.search(r"e-1[6-9]", path.read_text())
+    assert both_looks.plain.nmesh <= 1
+    assert both_looks.full.nmesh > both_looks.plain.nmesh
+
+
+@each_shape
+def test_a_plain_export_has_the_mechanics_of_a_full_one(both_looks: BothLooks) -> None:
     for name in set(WHAT.split()) - {"mesh_face"}:
         if not name.startswith("geom"):
-            assert np.array_equal(getattr(plain, name), getattr(full, name)), name
-    touching = [model.geom_contype > 0 for model in models]
+            plain = getattr(both_looks.plain, name)
+            assert np.array_equal(plain, getattr(both_looks.full, name)), name
+
+
+@each_shape
+def test_what_touches_is_the_same_in_a_plain_and_a_full_export(both_looks: BothLooks) -> None:
+    touching_in_plain = both_looks.plain.geom_contype > 0
+    touching_in_full = both_looks.full.geom_contype > 0
+
     for name in ("geom_size", "geom_pos", "geom_quat", "geom_friction"):
-        plain_values, full_values = (
-            getattr(model, name)[which] for model, which in zip(models, touching, strict=True)
-        )
-        assert np.array_equal(plain_values, full_values), name
+        plain = getattr(both_looks.plain, name)[touching_in_plain]
+        full = getattr(both_looks.full, name)[touching_in_full]
+        assert np.array_equal(plain, full), name
 
 
-def test_a_plain_export_draws_the_can_where_it_is(tmp_path: pathlib.Path) -> None:
-    """The wall and the beer, along the axis and across it."""
-    for scene, axis in ((standing(can=TALL), 2), (frozen(can=TALL), 1)):
-        path = tmp_path / "can.xml"
-        how = {} if isinstance(scene, Standing) else {"rolling": "contact"}
-        export(scene, path, **how)
-        model = mujoco.MjModel.from_xml_path(str(path))
-        data = mujoco.MjData(model)
-        mujoco.mj_forward(model, data)
-        wall = data.geom("can_wall")
-        collision = data.geom("can")
-        assert np.allclose(wall.xpos, collision.xpos, atol=1e-12)
-        along = data.body("can").xmat.reshape(3, 3)[:, axis]
-        assert abs(wall.xmat.reshape(3, 3)[:, 2] @ along) == pytest.approx(1)
-        width, half_length, _ = model.geom("can_wall").size
-        assert TALL.radius < width < 1.1 * TALL.radius
-        assert TALL.length / 2 < half_length < 1.1 * TALL.length / 2
-        end = data.geom("can_end").xpos - wall.xpos
-        away = half_length if axis == 1 else -half_length
-        assert end @ along == pytest.approx(away, rel=0.02)
+class Drawn(NamedTuple):
+    """A tall can in a plain export, and which axis of its body is the can's."""
+
+    model: mujoco.MjModel
+    data: mujoco.MjData
+    along: np.ndarray
+    """The direction of the can's axis."""
+
+
+@pytest.fixture(params=["standing", "frozen"])
+def drawn(request: pytest.FixtureRequest, tmp_path: pathlib.Path) -> Drawn:
+    path = tmp_path / "can.xml"
+    if request.param == "standing":
+        export(standing(can=TALL), path)
+        axis = 2
+    else:
+        export(frozen(can=TALL), path, rolling="contact")
+        axis = 1
+    model = mujoco.MjModel.from_xml_path(str(path))
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    return Drawn(model, data, data.body("can").xmat.reshape(3, 3)[:, axis])
+
+
+def test_a_plain_export_draws_the_wall_where_the_can_is(drawn: Drawn) -> None:
+    wall = drawn.data.geom("can_wall")
+
+    assert np.allclose(wall.xpos, drawn.data.geom("can").xpos, atol=1e-12)
+    assert abs(wall.xmat.reshape(3, 3)[:, 2] @ drawn.along) == pytest.approx(1)
+
+
+def test_a_plain_export_draws_the_wall_around_the_can(drawn: Drawn) -> None:
+    width, half_length, _ = drawn.model.geom("can_wall").size
+
+    assert TALL.radius < width < 1.1 * TALL.radius
+    assert TALL.length / 2 < half_length < 1.1 * TALL.length / 2
+
+
+def test_a_plain_export_draws_one_end_of_the_can(drawn: Drawn) -> None:
+    """It is the bottom of a can that stands, and the far end of one that lies."""
+    _, half_length, _ = drawn.model.geom("can_wall").size
+    stands = abs(drawn.along[2]) > 0.9
+
+    end = drawn.data.geom("can_end").xpos - drawn.data.geom("can_wall").xpos
+
+    away = -half_length if stands else half_length
+    assert end @ drawn.along == pytest.approx(away, rel=0.02)
 
 
 @pytest.mark.slow
@@ -292,29 +408,36 @@ def test_a_plain_export_draws_the_can_where_it_is(tmp_path: pathlib.Path) -> Non
 def test_cans_of_every_size(
     make: Callable[..., Scene], radius: float, rolling: Rolling, tmp_path: pathlib.Path
 ) -> None:
-    """With the joints of a portable equality in the other order a row reaches 1 % of its force for
-    a can of 1 mm."""
-    # Time goes as the root of the size, and so do the timestep and the duration that are as hard to
-    # simulate.
+    """Time goes as the root of the size, as do timestep and duration that are as hard to simulate.
+
+    With the joints of a portable equality in the other order a row reaches 1 % of its force for a
+    can of 1 mm.
+    """
     scene = make(can=Can.sheet_metal(radius, 4 * radius, radius / 300))
     pace = math.sqrt(radius / 0.033)
     path = tmp_path / "model.xml"
     start = (START[0], START[1] / pace)
+
     export(scene, path, *start, rolling, timestep=1e-3 * pace, friction=FRICTION, portable=True)
+
     assert move(path, scene, start, 0.3 * pace) < TOLERANCE[rolling]
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("rolling", ROLLINGS)
 @pytest.mark.parametrize("integrator", MUJOCO_INTEGRATORS)
-def test_what_was_asked_for_arrives(integrator: str, tmp_path: pathlib.Path) -> None:
+def test_what_was_asked_for_arrives(
+    integrator: str, rolling: Rolling, tmp_path: pathlib.Path
+) -> None:
     scene = pendulum(-0.7, gravity=1.62)
-    for rolling in ROLLINGS:
-        export(scene, tmp_path / "model.xml", 2.0, -3.0, rolling, integrator, 7.3e-4, 0.37)
-        model = mujoco.MjModel.from_xml_path(str(tmp_path / "model.xml"))
-        assert model.opt.integrator == getattr(mujoco.mjtIntegrator, f"mjINT_{integrator.upper()}")
-        assert model.opt.timestep == 7.3e-4
-        assert np.linalg.norm(model.opt.gravity) == scene.gravity
-        assert all(model.pair_friction[:, 0] == 0.37)
+
+    export(scene, tmp_path / "model.xml", 2.0, -3.0, rolling, integrator, 7.3e-4, 0.37)
+
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "model.xml"))
+    assert model.opt.integrator == getattr(mujoco.mjtIntegrator, f"mjINT_{integrator.upper()}")
+    assert model.opt.timestep == 7.3e-4
+    assert np.linalg.norm(model.opt.gravity) == scene.gravity
+    assert all(model.pair_friction[:, 0] == 0.37)
 
 
 @pytest.mark.parametrize(
@@ -354,8 +477,10 @@ def test_what_cannot_be_written_is_refused(
     (tmp_path / "file").touch()
     given = {"scene": frozen(), "path": "model.xml"} | arguments
     given["path"] = tmp_path / str(given["path"])
+
     with pytest.raises(error, match=message):
         export(**given)
+
     assert os.listdir(tmp_path) == ["file"]
 
 
@@ -365,7 +490,7 @@ def test_what_cannot_be_written_is_refused(
 @pytest.mark.slow
 @pytest.mark.parametrize(("name", "rolling"), CASES)
 def test_sensors_have_the_values_of_the_letters(name: str, rolling: Rolling) -> None:
-    """And the kinetic energy, or none where a constant force stands for a weight."""
+    """So has the kinetic energy, which is left out where a constant force stands for a weight."""
     scene = SCENES[name]
     phi = 1.1
     phi_dot = -7.0
@@ -375,10 +500,12 @@ def test_sensors_have_the_values_of_the_letters(name: str, rolling: Rolling) -> 
     start = initial_state(model, scene, phi, phi_dot)
     data.qpos[:] = start[: model.nq]
     data.qvel[:] = start[model.nq :]
+
     mujoco.mj_forward(model, data)
     found = {model.sensor(i).name: float(data.sensor(i).data[0]) for i in range(model.nsensor)}
     if model.opt.enableflags & int(mujoco.mjtEnableBit.mjENBL_ENERGY):
         found["kinetic_energy"] = float(data.energy[1])
+
     expected = {"u": u, "phi": phi, "u_dot": u_dot, "phi_dot": phi_dot}
     if rolling != "reduced":
         expected["slip"] = 0.0
@@ -393,7 +520,11 @@ def test_sensors_have_the_values_of_the_letters(name: str, rolling: Rolling) -> 
     # A can in contact starts 1e-9 radii deep.
     allowed = 1e-8 if rolling == "contact" else ROUNDING
     assert found == pytest.approx(expected, rel=ROUNDING, abs=allowed * scale)
-    assert build(scene, rolling).nsensor == 0
+
+
+@pytest.mark.parametrize(("name", "rolling"), CASES)
+def test_a_model_that_is_not_shown_has_no_sensors(name: str, rolling: Rolling) -> None:
+    assert build(SCENES[name], rolling).nsensor == 0
 
 
 # What others make of portable exports

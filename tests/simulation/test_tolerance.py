@@ -99,6 +99,7 @@ def test_true_error_is_below_the_tolerance(
     assume(condition < WORST_CONDITION * tolerance)
 
     run = simulate(scene, duration, phi0, phi_dot0, tolerance=tolerance, times=times)
+
     assert_kept(run, tolerance)
 
 
@@ -106,6 +107,7 @@ def test_true_error_is_below_the_tolerance(
 @pytest.mark.parametrize("scene", [sliding(), frozen()])
 def test_the_estimate_bounds_the_true_error(scene: Scene, tolerance: float) -> None:
     run = simulate(scene, 2, 1.0, tolerance=tolerance)
+
     assert error(run) <= run.error_estimate <= tolerance
     assert run.integrator == "GaussJackson"
     assert run.timestep is None
@@ -139,27 +141,33 @@ LIGHT_WHEELS = [
 
 @pytest.mark.parametrize("case", LIGHT_WHEELS)
 def test_a_light_wheel_keeps_to_the_tolerance_or_is_refused(case: Case) -> None:
-    """Its load passes the lowest point in a moment, and there two runs of Gauss-Jackson were 10 and
-    5 times as far off as they should have been, and those of DOP853, with the nudge of any wheel,
-    1.6 times."""
+    """Its load passes the lowest point in a moment.
+
+    There two runs of Gauss-Jackson were 10 and 5 times as far off as they should have been, and
+    those of DOP853, with the nudge of any wheel, 1.6 times.
+    """
     assert_kept_or_refused(case, easily_kept=1000 * case.tolerance)
 
 
-def test_what_cannot_be_met_is_refused_and_says_how_far_it_got(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """More digits than a double has, a model that is wrong by itself, and a budget that is used
-    up."""
+@pytest.mark.parametrize("tolerance", [0.99e-12, 1e-30])
+def test_more_digits_than_rounding_leaves_are_refused(tolerance: float) -> None:
     lost = r"is not reached: less than 1e-12 rad is lost in the rounding"
-    for tolerance in (0.99e-12, 1e-30):
-        with pytest.raises(ToleranceError, match=lost):
-            simulate(sliding(), 0.1, 0.1, tolerance=tolerance)
+
+    with pytest.raises(ToleranceError, match=lost):
+        simulate(sliding(), 0.1, 0.1, tolerance=tolerance)
+
+
+def test_a_tolerance_below_the_error_of_the_model_itself_is_refused() -> None:
     with pytest.raises(
         ParameterError,
         match=r"a contact is soft.* got 'contact' and 1e-09 rad.* see error_estimate",
     ):
         simulate(frozen(can=METAL), 2, 1.0, rolling="contact", tolerance=1e-9)
+
+
+def test_a_run_whose_budget_is_used_up_says_how_far_it_got(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("mjbeer.simulation.solve.EVALUATIONS", 5000)
+
     with pytest.raises(
         ToleranceError, match=r"tolerance 1e-12 rad is not reached: .* given up at t = \d"
     ):
@@ -169,13 +177,17 @@ def test_what_cannot_be_met_is_refused_and_says_how_far_it_got(
 @pytest.mark.parametrize("phi0", [0.0, 1e-30])
 def test_a_motion_that_hardly_swings_is_no_trouble(phi0: float) -> None:
     run = simulate(sliding(incline=0.0), 2, phi0, tolerance=1e-10)
+
     assert abs(run.phi).max() <= 1e-10
 
 
 def test_no_arm_is_lost_in_a_long_way() -> None:
-    """A nearly full can swings every 130 s, and rolls 3e5 m in 600 s, whose rounding is an
-    arm's."""
+    """A nearly full can swings every 130 s, and rolls 3e5 m in 600 s.
+
+    The rounding of this way is as large as the arm.
+    """
     run = simulate(sliding(fill=1 - 1e-4), 600.0, 1.0, timestep=1.0, tolerance=1e-9)
+
     assert_kept(run, 1e-9)
     assert run.u[-1] > 1e5
 
@@ -192,8 +204,10 @@ BESIDE = [
 
 
 def test_beside_a_separatrix_a_tolerance_is_met_or_refused() -> None:
-    """Rounding grows a millionfold there. Judged by the distance of two runs alone, some were 1.9
-    times as far off."""
+    """Rounding grows a millionfold there.
+
+    Where the distance of two runs alone was the judge, some were 1.9 times as far off.
+    """
     met = 0
     for tolerance in (1e-6, 1e-8, 1e-10):
         for scene, rolling, beside in BESIDE:
@@ -232,10 +246,13 @@ def test_cans_of_any_size_keep_to_the_tolerance(
 
 
 def test_two_runs_of_a_thousand_turns_do_not_agree_by_chance() -> None:
-    """Over many turns their errors are those of the energy, whose sign and size change with every
-    step size. So the distance of two runs was once a third of the error; the drift of the energy
-    bounds it."""
+    """Over many turns their errors are those of the energy.
+
+    The sign and size of these change with every step size, so that the distance of two runs was
+    once a third of the error. The drift of the energy bounds it.
+    """
     can = Can(0.033, 0.12, 0.20620484379640378, 0.00022457707489428374)
+
     for nudge in np.linspace(0, 1e-9, 3):
         run = simulate(
             sliding(-1.09, 0.885, can, gravity=1e3),
@@ -245,6 +262,7 @@ def test_two_runs_of_a_thousand_turns_do_not_agree_by_chance() -> None:
             tolerance=2.6e-6,
             times=[2.0],
         )
+
         assert_kept(run, 2.6e-6)
 
 
@@ -263,7 +281,7 @@ MIXED = sliding(0.3, can=METAL, damping=Damping(1e-4, 1e-6, 1e-7), drag=0.05)
 def test_damped_motions_keep_to_the_tolerance(
     scene: Scene, damping: float, drag: float, phi0: float, swing: float, tolerance: float
 ) -> None:
-    """Damping over eleven decades, in units of what stops the load within a radian."""
+    """The damping has eleven decades, in units of what stops the load within a radian."""
     assume(scene.attachment == "sliding")
     unit = math.sqrt(scene.gravity / scene.can.radius)
     scene = replace(
@@ -285,20 +303,30 @@ def test_damped_motions_keep_to_the_tolerance(
     assert run.integrator == "DOP853"
 
 
+STIFF = sliding(can=METAL, damping=1e3)
+
+
 def test_damping_that_is_too_stiff_is_refused_at_once() -> None:
     with pytest.raises(
         ToleranceError, match=r'slip decays at .*/s.*integrator="implicitfast".*frozen load'
     ):
-        simulate(sliding(can=METAL, damping=1e3), 1.0, 1.0, tolerance=1e-6)
-    run = simulate(sliding(can=METAL, damping=1e3), 1.0, 1.0, integrator="implicitfast")
-    # The frozen load is the limit: what turns the can, 0.05 N m or less, is a slip rate of 1e-4
-    # rad/s of 200.
+        simulate(STIFF, 1.0, 1.0, tolerance=1e-6)
+
+
+def test_an_implicit_method_follows_damping_that_is_too_stiff_for_a_tolerance() -> None:
+    """The frozen load is the limit.
+
+    What turns the can, 0.05 N m or less, leaves a slip rate of 1e-4 rad/s, where the load turns at
+    200 rad/s.
+    """
+    run = simulate(STIFF, 1.0, 1.0, integrator="implicitfast")
+
     assert np.abs(run.phi_dot - run.u_dot / METAL.radius)[10:].max() < 1e-3
 
 
 @pytest.mark.parametrize("phi", [0.0, 3.0])
 def test_stiffness_is_the_fast_root(phi: float) -> None:
-    """That of the linearized equations; the others are of the order of the swing's rate, 20 1/s."""
+    """It is that of the linearized equations: 3e5 1/s or more, where the others are some 20 1/s."""
     scene = sliding(0.2, can=METAL, damping=Damping(30.0, 0.2, 0.1))
     phi_dot = 2.0
     u_dot = 0.1
@@ -312,25 +340,29 @@ def test_stiffness_is_the_fast_root(phi: float) -> None:
     by_u_dot = accelerations_at(phi_dot, u_dot + aside) - accelerations_at(phi_dot, u_dot - aside)
     jacobian = np.stack([by_phi_dot, by_u_dot], axis=1) / (2 * aside)
     root = -np.linalg.eigvals(jacobian).real.min()
-    # It is 3e5 1/s or more, and the other one some 20 1/s.
+
     rate = relaxation_rate(scene, phi, u_dot / METAL.radius - phi_dot)
+
     assert rate == pytest.approx(root, rel=1e-4)
 
 
+@pytest.mark.parametrize(
+    ("integrator", "timestep", "right"),
+    [("RK4", 1e-3, True), ("DOP853", 1e-3, True), ("Euler", 5e-3, False)],
+)
 @pytest.mark.parametrize("damping", [1e-12, 1e-3])
-def test_a_damped_run_is_trusted_if_it_is_right(damping: float) -> None:
+def test_a_damped_run_is_trusted_if_it_is_right(
+    damping: float, integrator: str, timestep: float, right: bool
+) -> None:
+    """RK4 errs by 2.3e-7 rad at most, and Euler by 0.17 rad or more."""
     scene = sliding(damping=damping)
     times = np.linspace(0, 4, 21)
-    truth = exact(scene, times, 2.0)
-    for integrator, timestep, right in (
-        ("RK4", 1e-3, True),
-        ("DOP853", 1e-3, True),
-        ("Euler", 5e-3, False),
-    ):
-        run = simulate(scene, 4, 2.0, integrator=integrator, timestep=timestep, times=times)
-        # RK4 errs by 2.3e-7 rad at most, and Euler by 0.17 rad or more.
-        assert (largest_error(run, truth, scene.can.radius) < 1e-6) == right
-        assert run.trusted == right, run.warnings
+
+    run = simulate(scene, 4, 2.0, integrator=integrator, timestep=timestep, times=times)
+
+    found = largest_error(run, exact(scene, times, 2.0), scene.can.radius)
+    assert (found < 1e-6) == right
+    assert run.trusted == right, run.warnings
 
 
 @pytest.mark.parametrize("rolling", ["reduced", "equality"])
@@ -338,18 +370,19 @@ def test_a_damped_run_is_trusted_if_it_is_right(damping: float) -> None:
 def test_a_second_run_estimates_the_error_of_implicit_methods(
     integrator: str, rolling: str
 ) -> None:
-    """Where MuJoCo's accelerations are those of a whole step, they must not be taken for a loss of
-    the model's."""
+    """MuJoCo's accelerations are those of a whole step, and not taken for an error of the model."""
     scene = sliding(can=METAL, damping=1e-3)
+
     run = simulate(
         scene, 1, 1.0, rolling=rolling, integrator=integrator, times=np.linspace(0, 1, 11)
     )
+
     found = largest_error(run, exact(scene, run.time, 1.0), scene.can.radius)
     assert found < run.error_estimate < 5 * found
 
 
 def test_the_forces_of_all_steps_are_those_of_the_motion() -> None:
-    """Within the long steps of DOP853 too, where speed and slip are those of polynomials."""
+    """They are so within the long steps of DOP853, too, where polynomials give speed and slip."""
     truth = exact(MIXED, np.linspace(0, 1, 1001), 1.0, 5.0)
 
     run = simulate(MIXED, 1, 1.0, 5.0, tolerance=1e-9)
@@ -384,16 +417,29 @@ def test_two_runs_that_err_alike_are_not_taken_for_right(case: Case) -> None:
     assert_kept(case.run(), case.tolerance)
 
 
-def test_what_rounding_does_beside_a_separatrix_is_not_taken_back() -> None:
-    """A nudge of the start and a steady push once changed the energy of a swing in opposite ways:
-    of 4e-10 rad by rounding the distance of two runs showed a tenth. Here the push is as large as
-    the effect of the nudge."""
-    scene = frozen(incline=-0.060066851590913406, fill=0.33694811532272906)
-    case = Case(scene, end=4.1, phi0=-2.9815290465212523, tolerance=5e-11)
+BESIDE_A_SEPARATRIX = Case(
+    frozen(incline=-0.060066851590913406, fill=0.33694811532272906),
+    end=4.1,
+    phi0=-2.9815290465212523,
+    tolerance=5e-11,
+)
+"""A swing whose energy a nudge of the start and a steady push once changed in opposite ways.
+
+Of 4e-10 rad by rounding the distance of two runs showed a tenth. Here the push is as large as the
+effect of the nudge.
+"""
+
+
+def test_a_tolerance_below_what_rounding_does_beside_a_separatrix_is_refused() -> None:
     with pytest.raises(ToleranceError):
-        case.run()
-    for tolerance in (5e-10, 5e-9):
-        assert_kept_or_refused(case._replace(tolerance=tolerance), easily_kept=5e-7)
+        BESIDE_A_SEPARATRIX.run()
+
+
+@pytest.mark.parametrize("tolerance", [5e-10, 5e-9])
+def test_a_tolerance_above_what_rounding_does_beside_a_separatrix_is_kept_or_refused(
+    tolerance: float,
+) -> None:
+    assert_kept_or_refused(BESIDE_A_SEPARATRIX._replace(tolerance=tolerance), easily_kept=5e-7)
 
 
 NEAR_ROUNDING = {
@@ -442,8 +488,10 @@ def test_a_tolerance_near_rounding_is_kept_where_the_damping_has_corners() -> No
 def test_a_rotation_is_stepped_through_again_with_shorter_steps(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """An even rotation takes steps of any length: two runs had 507 and 496 evaluations, and nearly
-    the same error."""
+    """An even rotation takes steps of any length.
+
+    Two runs had 507 and 496 evaluations, and nearly the same error.
+    """
     longest_steps = []
     run = DOP853.run
 
@@ -453,13 +501,25 @@ def test_a_rotation_is_stepped_through_again_with_shorter_steps(
         return states
 
     monkeypatch.setattr(DOP853, "run", noted)
+
     simulate(frozen(can=METAL), 1.0, 1.0, 100.0, rolling="equality", tolerance=1e-3, times=[1.0])
+
     coarse, fine, *_ = longest_steps
     assert fine <= coarse / 1.2
 
 
-@pytest.mark.parametrize("scene", [sliding(), frozen()])
-def test_the_distance_of_two_runs_is_that_of_their_motions(scene: Scene) -> None:
+class TwoRuns(NamedTuple):
+    """Two runs of made-up states that differ by about 1e-3, and how far their motions are apart."""
+
+    problem: Problem
+    coarse: np.ndarray
+    fine: np.ndarray
+    apart: float
+    """In phi and u/a [rad]."""
+
+
+@pytest.fixture
+def two_runs(scene: Scene) -> TwoRuns:
     model = build(scene)
     times = np.arange(50.0)
     random = np.random.default_rng(8)
@@ -474,7 +534,19 @@ def test_the_distance_of_two_runs_is_that_of_their_motions(scene: Scene) -> None
         scene.can.radius,
         (begin.phi[0], begin.u[0]),
     )
+    return TwoRuns(problem, coarse, fine, apart)
+
+
+@pytest.mark.parametrize("scene", [sliding(), frozen()])
+def test_the_distance_of_two_runs_is_that_of_their_motions(two_runs: TwoRuns) -> None:
+    distance = largest_distance(two_runs.problem, two_runs.coarse, two_runs.fine)
+
     rounding = 1e-10  # of angles that are ten thousand times as large as what they differ by
-    assert largest_distance(problem, coarse, fine) == pytest.approx(apart, rel=rounding)
-    coarse[20] = math.nan
-    assert largest_distance(problem, coarse, fine) == math.inf
+    assert distance == pytest.approx(two_runs.apart, rel=rounding)
+
+
+@pytest.mark.parametrize("scene", [sliding(), frozen()])
+def test_a_run_without_a_number_is_infinitely_far_from_another(two_runs: TwoRuns) -> None:
+    two_runs.coarse[20] = math.nan
+
+    assert largest_distance(two_runs.problem, two_runs.coarse, two_runs.fine) == math.inf
