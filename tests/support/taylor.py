@@ -155,6 +155,8 @@ def motion(
     integrator.time = EXTENDED(0)
     integrator.state[:] = [0, u / unit, rate, u_dot / unit]
     if corners:  # the sign of what starts at zero is that of its derivative
+        # Events of the motion before must not keep those of this one from being seen.
+        integrator.reset_cooldowns()
         u_ddot, phi_ddot = accelerations(scene, phi0, phi_dot0, float(u_dot))
         sign_of_slip = np.sign(u_dot / radius - rate)
         sign_of_speed = np.sign(u_dot)
