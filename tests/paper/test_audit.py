@@ -1,6 +1,7 @@
 """The audit: every equation has a row, which passes, and fails if the equation is a broken one."""
 
 import dataclasses
+import math
 import re
 from collections import Counter
 
@@ -12,9 +13,12 @@ from mjbeer.paper.claim import (
     APPROXIMATION,
     CONFIRMED,
     CONSEQUENCE,
+    CORRECTED,
     MISPRINT,
     Claim,
+    ClaimResult,
     Observation,
+    PrintedError,
     relative_residual,
     terms,
     value,
@@ -63,6 +67,17 @@ def test_kinds_of_what_is_wrong() -> None:
         assert not (row.misprint and row.limit)
         must_fail = row.misprint or row.limit
         assert must_fail is None or must_fail.expected_error > 5 * row.bound.error
+
+
+@pytest.mark.parametrize(
+    ("measured", "passed"), [(0.059, True), (0.0563, True), (0.055, False), (math.nan, False)]
+)
+def test_a_misprint_must_have_its_error_to_two_digits(measured: float, passed: bool) -> None:
+    printed = PrintedError(measured, expected=0.059)
+
+    result = ClaimResult("(49)", "n", bound=1e-9, error=1e-10, verdict=CORRECTED, printed=printed)
+
+    assert result.passed is passed
 
 
 @pytest.mark.slow

@@ -12,12 +12,11 @@ import shlex
 import pytest
 
 from mjbeer import paper
-from mjbeer.checks.check import Result
 from mjbeer.cli.app import main, parse
 from mjbeer.drawing import opengl
 from mjbeer.drawing.film import MotionFilm
 from mjbeer.output import folders
-from mjbeer.paper.claim import CORRECTED, Bound, Claim, Witness
+from mjbeer.paper.claim import CORRECTED, Bound, Claim, ClaimResult, PrintedError, Witness
 from mjbeer.report import films, page
 from mjbeer.report.films import FILMS
 from mjbeer.studies.validation.validate import Validation
@@ -160,18 +159,15 @@ def test_a_film_that_fails_leaves_the_old_page(
 def text() -> str:
     """Return a page with a result for each misprint; the errors are made up."""
     results = [
-        Result(
+        ClaimResult(
             group=row.equation,
             name=row.quantity,
             by="a witness",
             bound=1e-6,
             reason="rounding",
             error=1.7e-9 * (place + 1),
-            values={
-                "printed": 0.0127 * (place + 1),
-                "expected_error": 0.0123 * (place + 1),
-                "verdict": CORRECTED,
-            },
+            verdict=CORRECTED,
+            printed=PrintedError(0.0127 * (place + 1), expected=0.0123 * (place + 1)),
         )
         for place, row in enumerate(MISPRINTS)
     ]
