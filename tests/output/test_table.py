@@ -91,3 +91,11 @@ def test_a_document_has_the_verdict_of_the_audit_and_what_failed() -> None:
     assert checks.rows[1][2].endswith(" **FAIL**")
     assert [row[2] for row in audit.rows] == [CONFIRMED, CORRECTED]
     assert audit.rows[1][4:6] == ("0.059", "4.0e-10")
+
+
+def test_the_verdict_counts_a_corrected_claim_only_if_it_came_out_as_expected() -> None:
+    audit = [RIGHT, misprint(0.0589, 4e-10), misprint(0.0589, 3e-8)]
+    assert Validation([PASSED, UNKNOWN], audit).sentence == (
+        "1 of 2 checks passed, and 2 of 3 claims of the paper came out as expected "
+        "(1 hold as printed, 1 only after a correction)"
+    )

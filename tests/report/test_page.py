@@ -23,7 +23,10 @@ from mjbeer.report.films import FILMS
 from mjbeer.studies.validation.validate import Validation
 from tests.support import stubs
 
-SENTENCE = "{} of {} checks and {} of {} claims of the paper passed"
+SENTENCE = (
+    "{} of {} checks passed, and {} of {} claims of the paper came out as expected "
+    "({} hold as printed, {} only after a correction)"
+)
 MISPRINTS = [row for row in paper.claims() if row.misprint]
 
 
@@ -83,7 +86,8 @@ def test_validate_tells_a_failure_whatever_is_asked_for(
             f"FAILED: stubs: second (a stub): {problem} rad",
             f"FAILED: other: a stub (none): {problem}",
         ]
-    assert err.splitlines() == [*messages, SENTENCE.format(2 - status, 2, 2 - status, 2)]
+    good = 2 - status
+    assert err.splitlines() == [*messages, SENTENCE.format(good, 2, good, 2, good, 0)]
     if option == "--json":
         content = json.loads(out, parse_constant=pytest.fail)
         assert content["passed"] == (status == 0)
@@ -118,11 +122,11 @@ def test_a_report_is_one_page_with_all_films(
         f"film {name}" for name in names
     ]
     assert ("The films were left out of this quick report." in text) == quick
-    for words in (SENTENCE.format(2, 2, 0, 0), "A plot &amp; a title", "<td>first</td>"):
+    for words in (SENTENCE.format(2, 2, 0, 0, 0, 0), "A plot &amp; a title", "<td>first</td>"):
         assert words in text
     assert {call.width for call in calls} == {640 if quick else 768}
     where = f"the report is in {folder / 'index.html'}"
-    assert capsys.readouterr().err.endswith(f"{where}\n{SENTENCE.format(2, 2, 0, 0)}\n")
+    assert capsys.readouterr().err.endswith(f"{where}\n{SENTENCE.format(2, 2, 0, 0, 0, 0)}\n")
 
 
 @pytest.mark.slow

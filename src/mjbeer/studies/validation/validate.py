@@ -8,6 +8,7 @@ from mjbeer import paper
 from mjbeer.checks.as_json import to_json
 from mjbeer.checks.check import Check, Result
 from mjbeer.output.terminal import Table, progress_bar
+from mjbeer.paper.claim import CORRECTED
 from mjbeer.studies.study import FAILED, machine
 from mjbeer.studies.validation import motion_checks, standing_checks, track_checks
 
@@ -35,12 +36,14 @@ class Validation:
 
     @property
     def sentence(self) -> str:
-        """How many checks and how many claims passed."""
+        """How many checks passed, and how many claims came out as expected, and in which way."""
         checks = sum(result.passed for result in self.results)
-        claims = sum(result.passed for result in self.audit)
+        expected = [result for result in self.audit if result.passed]
+        corrected = sum(result.values["verdict"] == CORRECTED for result in expected)
         return (
-            f"{checks} of {len(self.results)} checks and "
-            f"{claims} of {len(self.audit)} claims of the paper passed"
+            f"{checks} of {len(self.results)} checks passed, and "
+            f"{len(expected)} of {len(self.audit)} claims of the paper came out as expected "
+            f"({len(expected) - corrected} hold as printed, {corrected} only after a correction)"
         )
 
     def tables(self) -> list[Table]:
