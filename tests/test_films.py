@@ -172,7 +172,12 @@ def test_a_film_lasts_from_two_to_twelve_seconds(name: str) -> None:
     film = ALL[name]
     plan = film.plan()
     assert 2 <= len(plan.times(FPS)) / FPS <= 12
-    assert plan.start <= film.still <= plan.end
+    assert film.still is None or plan.start <= film.still <= plan.end
+
+
+def test_the_poster_of_a_race_to_be_predicted_shows_its_start() -> None:
+    for name in ("race", "liquids"):
+        assert FILMS[name].still == 0
 
 
 @pytest.mark.slow

@@ -524,6 +524,48 @@ def test_a_browser_lists_the_results_of_both_races(raced: str, first_time: str) 
 
 
 @pytest.mark.slow
+def test_a_guess_is_answered_when_the_first_can_arrives(tmp_path: pathlib.Path) -> None:
+    """Though the others still roll: of these there is no time yet."""
+    link = "#incline=7.1&a-inside=honey&a-fill=75&b-inside=ice&b-fill=75"
+    show_at = "compute(); guesses[0].click(); go(); goTo((lanes[1].run.arrives {}) / end)"
+    before = element(shown(tmp_path, show_at.format("- 1e-3"), link), "verdict")
+    after = element(shown(tmp_path, show_at.format("+ 1e-3"), link), "verdict")
+    assert before == "The cans roll."
+    assert re.fullmatch(r"B \(ice\) is first after 2\.324 s\. Your guess was can A\.", after), after
+
+
+@pytest.mark.slow
+def test_words_beside_a_can_stay_between_start_and_end(tmp_path: pathlib.Path) -> None:
+    """In a narrow window and at all times, those of can A, to two pixels."""
+    link = "#" + urllib.parse.urlencode(story("The race"))
+    code = """
+      Object.defineProperty($("scene"), "clientWidth", {value: 340});
+      let beyond = 0;
+      let words = 0;
+      const plain = write;
+      write = (text, x, y, align, style) => {
+        plain(text, x, y, align, style);
+        if (!text.startsWith("no friction inside") && !text.startsWith("N =")) return;
+        words += 1;
+        const place = pen.getTransform().transformPoint({x, y});
+        const wide = pen.measureText(text).width * (align === "left" ? 1 : -1);
+        const from = plan.pointOf(0)(0, 0)[0] - 2;
+        const to = plan.pointOf(0)(plan.long - BEFORE, 0)[0] + 2;
+        const ends = [place.x, place.x + wide * Math.cos(plan.incline)];
+        if (Math.min(...ends) < from || Math.max(...ends) > to) beyond += 1;
+      };
+      const plan = planScene();
+      compute();
+      guesses[4].click();
+      go();
+      for (let k = 0; k < 200; k++) goTo(k / 200);
+      $("forces").click();
+      for (let k = 0; k < 200; k++) goTo(k / 200);
+      document.title = [words > 300, beyond];"""
+    assert "<title>true,0</title>" in shown(tmp_path, code, link)
+
+
+@pytest.mark.slow
 def test_the_link_of_the_lecture_is_its_race(tmp_path: pathlib.Path) -> None:
     """It names φ at the start alone, which is then how the cans start."""
     link = re.search(r"second of the\s+race\]\(live\.html(#[^)]*)\)", LECTURE)
@@ -562,6 +604,27 @@ def test_the_slowest_can_does_not_squeeze_the_curves_of_the_others(tmp_path: pat
     *others, slowest, shown_until = (float(number) for number in title.split(","))
     assert max(others) < shown_until < 1.5 * max(others) < slowest / 5
     assert "as D is so slow" in element(page, "cut")
+
+
+@pytest.mark.slow
+def test_no_letter_covers_the_end_of_a_curve(tmp_path: pathlib.Path) -> None:
+    """The middle of each end has the colour of its can: in the race A and B end side by side."""
+    link = "#" + urllib.parse.urlencode(story("The race"))
+    code = f"""{FINISH};
+      const dots = [];
+      const plain = arc;
+      arc = (x, y, r, style, ...angles) => {{
+        plain(x, y, r, style, ...angles);
+        if (r === 3.5) dots.push([x, y, style.fill]);
+      }};
+      drawPlot("distance", 1);
+      const seen = dots.map(([x, y, colour]) => {{
+        const [red, green, blue] = pen.getImageData(x, y, 1, 1).data;
+        const told = (red << 16) + (green << 8) + blue;
+        return told.toString(16) === colour.slice(1);
+      }});
+      document.title = seen;"""
+    assert "<title>true,true,true,true</title>" in shown(tmp_path, code, link)
 
 
 @pytest.mark.slow

@@ -22,15 +22,16 @@ from typing import Any, NamedTuple
 from mjbeer.output import files
 from mjbeer.output.jobs import Job, finished_jobs
 from mjbeer.output.terminal import STDERR, say
+from mjbeer.studies.can_test import CASES
 from mjbeer.studies.engines.results import (
     ASIDE,
-    CASES,
     RESULTS,
     TIMESTEPS,
     Engine,
     Motion,
     Results,
     Row,
+    question,
 )
 from mjbeer.studies.study import machine
 from tools.environments import CHECKOUT, AbsentError, python_with
@@ -129,14 +130,14 @@ def digest(path: pathlib.Path) -> str:
 
 def rolled(found: Program, row: Row, setting: int) -> Row:
     """Return a row with its motion, judged, or with the reason why there is none."""
-    question = {
-        "case": CASES[row.case].question(),
+    asked = {
+        "case": question(CASES[row.case]),
         "timestep": row.timestep,
         "setting": setting,
         "aside": ASIDE,
     }
     try:
-        told = found.ask(question)
+        told = found.ask(asked)
     except FailedError as error:
         row.failure = str(error)
         return row

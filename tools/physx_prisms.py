@@ -7,7 +7,8 @@ import json
 import subprocess
 
 from mjbeer.output import files
-from mjbeer.studies.engines.results import CASES
+from mjbeer.studies.can_test import ROLL
+from mjbeer.studies.engines.results import question
 from mjbeer.studies.polygon import PHYSX
 from tools.engines import FOLDER, program
 
@@ -17,7 +18,7 @@ def main() -> None:
     python = program(FOLDER / "sapien_can.py").python
     ran = subprocess.run(
         [python, FOLDER / "sapien_prisms.py"],
-        input=json.dumps(CASES["roll"].question()),
+        input=json.dumps(question(ROLL)),
         capture_output=True,
         text=True,
         check=True,

@@ -7,7 +7,14 @@ import numpy as np
 import pytest
 
 from mjbeer import Scene, Trajectory, exact, frozen, pendulum, simulate, sliding
-from mjbeer.drawing.overlay import Spans, draw_header, draw_title, draw_warning, note_spans
+from mjbeer.drawing.overlay import (
+    NOTES,
+    Spans,
+    draw_header,
+    draw_title,
+    draw_warning,
+    timed_notes,
+)
 from mjbeer.drawing.sheet import overlap
 from mjbeer.drawing.style import FilmStyle
 from tests.support.recorder import Recorder
@@ -66,8 +73,8 @@ def test_a_run_that_is_trusted_has_no_note() -> None:
 
 def noted(run: Trajectory, name: str) -> Spans:
     """Return from when to when a note holds."""
-    (spans,) = note_spans(run, [name]).values()
-    return spans
+    (note,) = timed_notes(run, [name])
+    return note.spans
 
 
 def angles(run: Trajectory, spans: Spans) -> np.ndarray:
@@ -90,11 +97,30 @@ def test_notes_are_there_while_it_happens() -> None:
     assert np.cos(angles(run, light)[0]) < 0
 
 
+def test_each_note_has_a_ground_of_its_own() -> None:
+    """Then a colour means the same in all films."""
+    assert len({note.ground for note in NOTES.values()}) == len(NOTES)
+
+
+def test_a_can_slips_before_it_flies() -> None:
+    """Frozen beer let go on top with mu = 1 begins to slip far at 0.83 s."""
+    run = simulate(frozen(), 1.0, math.pi, rolling="contact", timestep=2e-4, friction=1.0)
+
+    flies, slips = timed_notes(run, ["flies", "slips"])
+
+    (takes_off, _), *_ = flies.spans
+    (begins, ends), *_ = slips.spans
+    assert 0.83 < begins < ends
+    assert ends == pytest.approx(takes_off, abs=1e-3)
+    rolls = simulate(frozen(), 0.8, math.pi, tolerance=1e-9)
+    assert noted(rolls, "slips") == []
+
+
 def test_one_note_is_shown_at_a_time() -> None:
     """A hoop that flies does not press either: of the two the first is shown."""
     run = simulate(frozen(), 1.0, math.pi, rolling="contact", timestep=2e-4, friction=1.0)
 
-    flies, light = note_spans(run, ["flies", "light"]).values()
+    flies, light = (note.spans for note in timed_notes(run, ["flies", "light"]))
 
     assert any(first < 0.9 < last for first, last in noted(run, "light"))
     assert not any(first < 0.9 < last for first, last in light)

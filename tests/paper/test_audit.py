@@ -1,6 +1,7 @@
 """The audit: every equation has a claim, which passes, and fails if the equation is broken."""
 
 import dataclasses
+import math
 import re
 from collections import Counter
 
@@ -12,9 +13,12 @@ from mjbeer.paper.claim import (
     APPROXIMATION,
     CONFIRMED,
     CONSEQUENCE,
+    CORRECTED,
     MISPRINT,
     Claim,
+    ClaimResult,
     Observation,
+    PrintedError,
     relative_residual,
     terms,
     value,
@@ -103,6 +107,17 @@ NOT_CONFIRMED = [claim for claim in CLAIMS if claim.verdict != CONFIRMED]
 MISPRINTED = [claim for claim in NOT_CONFIRMED if claim.misprint]
 LIMITED = [claim for claim in NOT_CONFIRMED if not claim.misprint]
 """The claims that hold within a limit only."""
+
+
+@pytest.mark.parametrize(
+    ("measured", "passed"), [(0.059, True), (0.0563, True), (0.055, False), (math.nan, False)]
+)
+def test_a_misprint_must_have_its_error_to_two_digits(measured: float, passed: bool) -> None:
+    printed = PrintedError(measured, expected=0.059)
+
+    result = ClaimResult("(49)", "n", bound=1e-9, error=1e-10, verdict=CORRECTED, printed=printed)
+
+    assert result.passed is passed
 
 
 @pytest.mark.slow

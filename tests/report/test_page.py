@@ -12,18 +12,20 @@ import shlex
 import pytest
 
 from mjbeer import paper
-from mjbeer.checks.check import Result
 from mjbeer.cli.app import main, parse
 from mjbeer.drawing import opengl
 from mjbeer.drawing.film import MotionFilm
 from mjbeer.output import folders
-from mjbeer.paper.claim import CORRECTED, Bound, Claim, Witness
+from mjbeer.paper.claim import CORRECTED, Bound, Claim, ClaimResult, PrintedError, Witness
 from mjbeer.report import films, page
 from mjbeer.report.films import FILMS
 from mjbeer.studies.validation.validate import Validation
 from tests.support import stubs
 
-SENTENCE = "{} of {} checks and {} of {} claims of the paper passed"
+SENTENCE = (
+    "{} of {} checks passed, and {} of {} claims of the paper came out as expected "
+    "({} hold as printed, {} only after a correction)"
+)
 MISPRINTS = [row for row in paper.claims() if row.misprint]
 
 
@@ -83,7 +85,8 @@ def test_validate_tells_a_failure_whatever_is_asked_for(
             f"FAILED: stubs: second (a stub): {problem} rad",
             f"FAILED: other: a stub (none): {problem}",
         ]
-    assert err.splitlines() == [*messages, SENTENCE.format(2 - status, 2, 2 - status, 2)]
+    good = 2 - status
+    assert err.splitlines() == [*messages, SENTENCE.format(good, 2, good, 2, good, 0)]
     if option == "--json":
         content = json.loads(out, parse_constant=pytest.fail)
         assert content["passed"] == (status == 0)
@@ -118,11 +121,11 @@ def test_a_report_is_one_page_with_all_films(
         f"film {name}" for name in names
     ]
     assert ("The films were left out of this quick report." in text) == quick
-    for words in (SENTENCE.format(2, 2, 0, 0), "A plot &amp; a title", "<td>first</td>"):
+    for words in (SENTENCE.format(2, 2, 0, 0, 0, 0), "A plot &amp; a title", "<td>first</td>"):
         assert words in text
     assert {call.width for call in calls} == {640 if quick else 768}
     where = f"the report is in {folder / 'index.html'}"
-    assert capsys.readouterr().err.endswith(f"{where}\n{SENTENCE.format(2, 2, 0, 0)}\n")
+    assert capsys.readouterr().err.endswith(f"{where}\n{SENTENCE.format(2, 2, 0, 0, 0, 0)}\n")
 
 
 @pytest.mark.slow
@@ -160,18 +163,15 @@ def test_a_film_that_fails_leaves_the_old_page(
 def text() -> str:
     """Return a page with a result for each misprint; the errors are made up."""
     results = [
-        Result(
+        ClaimResult(
             group=row.equation,
             name=row.quantity,
             by="a witness",
             bound=1e-6,
             reason="rounding",
             error=1.7e-9 * (place + 1),
-            values={
-                "printed": 0.0127 * (place + 1),
-                "expected_error": 0.0123 * (place + 1),
-                "verdict": CORRECTED,
-            },
+            verdict=CORRECTED,
+            printed=PrintedError(0.0127 * (place + 1), expected=0.0123 * (place + 1)),
         )
         for place, row in enumerate(MISPRINTS)
     ]

@@ -8,8 +8,8 @@ import pytest
 
 from mjbeer import ParameterError, frozen, sliding
 from mjbeer.exceptions import UnsupportedError
-from mjbeer.studies import can_test, contact_creep
-from mjbeer.studies.can_test import ROCK, ROLL, Case
+from mjbeer.studies import contact_creep, mujoco_bodies
+from mjbeer.studies.can_test import CASES, ROCK, ROLL, Case
 from mjbeer.studies.contact_creep import (
     DEFAULT,
     ELLIPTIC,
@@ -31,7 +31,7 @@ AS_ROWS = 1e-12
 def sunken(setting: Setting, depth: float) -> tuple[mujoco.MjModel, mujoco.MjData]:
     """A can that is pressed into the incline, of which MuJoCo has computed all rows."""
     model = setting.model(ROLL, 1e-3)
-    data = can_test.start(ROLL, model)
+    data = mujoco_bodies.start(ROLL, model)
     data.qpos[2] = ROLL.scene.can.radius - depth
     mujoco.mj_forward(model, data)
     return model, data
@@ -62,13 +62,13 @@ def judged(setting: Setting, case: Case) -> None:
 
     The run's own error at 1 ms is a third of that: 1e-3 rad of 0.29.
     """
-    motion = can_test.run(case, setting.model(case, 1e-3))
-    coarse = can_test.Motion(*(samples[::10] for samples in motion))
-    measured = can_test.errors(case, coarse)
+    motion = mujoco_bodies.run(case, setting.model(case, 1e-3))
+    coarse = mujoco_bodies.Positions(*(samples[::10] for samples in motion))
+    measured = mujoco_bodies.errors(case, coarse)
     predicted = contact_creep.predicted(setting, case, coarse.time)
     assert measured.largest > 0.15
     within = 0.01 * measured.largest
-    assert can_test.errors(case, predicted) == pytest.approx(measured, abs=within)
+    assert mujoco_bodies.errors(case, predicted) == pytest.approx(measured, abs=within)
 
 
 @pytest.mark.slow
@@ -106,11 +106,11 @@ def test_a_can_sinks_until_the_spring_bears_it() -> None:
     assert depth == pytest.approx(-data.contact[0].dist, rel=1e-6)
 
 
-@pytest.mark.parametrize("case", can_test.CASES)
+@pytest.mark.parametrize("case", CASES.values())
 def test_the_can_touches_from_the_start(case: Case) -> None:
     """At both ends of its line of contact."""
     model = RECIPE.model(case, 1e-3)
-    data = can_test.start(case, model)
+    data = mujoco_bodies.start(case, model)
     mujoco.mj_forward(model, data)
     assert data.nefc > 0
     assert len(data.contact.dist) == 2
@@ -119,8 +119,8 @@ def test_the_can_touches_from_the_start(case: Case) -> None:
 
 def error(setting: Setting, case: Case, duration: float) -> float:
     """The largest error of a run at 1 ms [rad]."""
-    motion = can_test.run(case, setting.model(case, 1e-3), duration)
-    return can_test.errors(case, motion).largest
+    motion = mujoco_bodies.run(case, setting.model(case, 1e-3), duration)
+    return mujoco_bodies.errors(case, motion).largest
 
 
 def test_cone_and_impratio_cure_the_creep_but_not_the_sink() -> None:

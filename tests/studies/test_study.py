@@ -3,11 +3,10 @@
 import os
 import pathlib
 from functools import partial
-from typing import Any
 
 import pytest
 
-from mjbeer.checks.check import Check
+from mjbeer.checks.check import Check, Measured
 from mjbeer.exceptions import OutputError, ParameterError
 from mjbeer.studies import study as studies
 from mjbeer.studies.study import Study
@@ -25,11 +24,11 @@ def one_core(monkeypatch: pytest.MonkeyPatch) -> None:
 def checks_that_count(done: list[str]) -> list[Check]:
     """Three checks, of which the second is interrupted the first time."""
 
-    def measure(name: str) -> dict[str, Any]:
+    def measure(name: str) -> Measured:
         done.append(name)
         if done == ["a", "b"]:
             raise KeyboardInterrupt
-        return {"error": 0.5, "of": name}
+        return Measured(0.5, {"of": name})
 
     return [Check("g", name, partial(measure, name), "by", 1.0, "rad", "why") for name in "abc"]
 
@@ -119,12 +118,17 @@ def test_a_result_that_cannot_be_kept_is_an_error(tmp_path: pathlib.Path) -> Non
         studies.run([Check("g", "a", replace_by_folder)], None, path, COMMAND, {})
 
 
+def measure_where() -> Measured:
+    """Measure nothing, and tell in which process."""
+    return Measured(0.0, where())
+
+
 @pytest.mark.slow
 def test_results_of_other_processes_have_the_order_of_the_checks(
     tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(os, "cpu_count", lambda: 2)
-    checks = [Check("g", name, where) for name in "012"]
+    checks = [Check("g", name, measure_where) for name in "012"]
 
     study = studies.run(checks, None, tmp_path / "study.jsonl", COMMAND, {})
 

@@ -7,10 +7,6 @@ from typing import Any
 
 from mjbeer.checks.as_json import json_values
 
-_EXPECTED_WITHIN = 0.05
-"""Largest relative difference between the error of a misprint and the expected one, which has two
-digits."""
-
 
 @dataclass(frozen=True)
 class Result:
@@ -31,31 +27,23 @@ class Result:
     """Size of the deviation from the expected value, in `unit`; None if nothing is compared, or the
     deviation is not finite."""
     values: dict[str, Any] = field(default_factory=dict)
-    """Other measured values, as JSON has them. For a misprint of the paper, "printed" is its error
-    and "expected_error" the error that it must have."""
+    """What else was measured, as JSON has it: the study that measured it knows the names."""
 
     @property
     def passed(self) -> bool:
-        """Whether the error is within its bound, and a misprint's error as expected. NaN fails."""
-        if not self._misprint_is_as_expected:
-            return False
+        """Whether the error is within its bound. NaN fails."""
         if self.bound == math.inf:
             return True
         return self.error is not None and self.error <= self.bound
 
-    @property
-    def _misprint_is_as_expected(self) -> bool:
-        """Whether the misprint, if there is one, has the error that it must have."""
-        expected = self.values.get("expected_error")
-        if expected is None:
-            return True
-        printed = self.values["printed"]
-        return printed is not None and abs(printed / expected - 1) <= _EXPECTED_WITHIN
+    def fields(self) -> dict[str, Any]:
+        """Return all fields by their names."""
+        return asdict(self)
 
     def as_json(self) -> dict[str, Any]:
         """Return the fields that are not empty, as JSON has them: infinity and NaN are None."""
         fields = {
-            name: value for name, value in asdict(self).items() if value not in ("", {}, math.inf)
+            name: value for name, value in self.fields().items() if value not in ("", {}, math.inf)
         }
         return json_values(fields)
 
@@ -64,12 +52,17 @@ class Result:
         by = f" ({self.by})" if self.by else ""
         error = "-" if self.error is None else f"{self.error:.1e}"
         bound = f"{self.bound:.1e} {self.unit}".strip()
-        line = f"{self.group}: {self.name}{by}: error {error}, at most {bound}"
-        if "expected_error" in self.values:
-            printed = self.values["printed"]
-            expected = self.values["expected_error"]
-            line += f"; as printed {printed:.2g}, expected {expected:.2g}"
-        return line
+        return f"{self.group}: {self.name}{by}: error {error}, at most {bound}"
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What a check has measured, if that is more than a deviation."""
+
+    deviation: float
+    """The deviation with its sign, in the unit of the check."""
+    values: dict[str, Any]
+    """What else was measured, as JSON has it."""
 
 
 @dataclass(frozen=True)
@@ -78,9 +71,8 @@ class Check:
 
     group: str
     name: str
-    measure: Callable[[], float | dict[str, Any]]
-    """Returns the deviation with its sign, or a dictionary of values as JSON has them, in which
-    the deviation may be "error"."""
+    measure: Callable[[], float | Measured]
+    """Returns the deviation with its sign, alone or with what else was measured."""
     by: str = ""
     bound: float = math.inf
     unit: str = ""
@@ -89,9 +81,15 @@ class Check:
     def result(self) -> Result:
         """Measure the quantity."""
         measured = self.measure()
-        values = dict(measured) if isinstance(measured, dict) else {"error": measured}
-        deviation = values.pop("error", None)
-        error = None if deviation is None else abs(float(deviation))
+        if not isinstance(measured, Measured):
+            measured = Measured(measured, {})
         return Result(
-            self.group, self.name, self.by, self.bound, self.unit, self.reason, error, values
+            group=self.group,
+            name=self.name,
+            by=self.by,
+            bound=self.bound,
+            unit=self.unit,
+            reason=self.reason,
+            error=abs(float(measured.deviation)),
+            values=measured.values,
         )

@@ -13,7 +13,6 @@ from mjbeer.drawing.annotations import Annotations
 from mjbeer.drawing.board import Board
 from mjbeer.drawing.camera import Edges, follow
 from mjbeer.drawing.overlay import (
-    GROUNDS,
     HEADER,
     NOTE,
     STRIP,
@@ -21,7 +20,7 @@ from mjbeer.drawing.overlay import (
     draw_header,
     draw_note,
     draw_warning,
-    note_spans,
+    timed_notes,
 )
 from mjbeer.drawing.scene import Display, Painter, coordinates
 from mjbeer.drawing.sheet import Sheet
@@ -76,8 +75,8 @@ class Film(ABC):
     """Playback speed: 1 is real time."""
     hold: float = 0.0
     """How long the film shows its end, which stands still [s of the video]."""
-    still: float = 0.0
-    """Time of the picture that stands for the film [s]; 0 is a third of the way through."""
+    still: float | None = None
+    """Time of the picture that stands for the film [s]; None is a third of the way through."""
     caption: str = ""
     """What is seen, in whole sentences, for the text beside the film."""
 
@@ -139,11 +138,11 @@ def _pictures(
 
     annotations = Annotations(trajectory, style, front)
     board = Board(display, float(trajectory.u[0] - trajectory.distance[0]))
-    notes = note_spans(trajectory, style.notes)
+    notes = timed_notes(trajectory, style.notes)
     doubts = trajectory.solver_warnings
     strip = None
     if has_charts:
-        stages = [Stage(*stage) for stage in zip(notes.values(), GROUNDS, strict=False)]
+        stages = [Stage(note.spans, note.ground) for note in notes]
         shown = charts(trajectory, style.strips, "equilibrium" in style.marks)
         strip = ChartStrip(shown, width, below, stages)
 

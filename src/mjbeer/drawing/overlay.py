@@ -2,14 +2,14 @@
 
 import math
 import textwrap
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from mjbeer.drawing.annotations import LEGENDS
 from mjbeer.drawing.quantities import mean_forces
-from mjbeer.drawing.sheet import INK, Sheet
+from mjbeer.drawing.sheet import INK, Colour, Sheet
 from mjbeer.drawing.style import FilmStyle, scene_names
 from mjbeer.drawing.words import in_words
 from mjbeer.theory.trajectory import Trajectory
@@ -132,6 +132,14 @@ class Note(NamedTuple):
     """What it says, with places for the names of {body} and {load}, and the largest {lift} [mm]."""
     holds: Callable[[Trajectory], np.ndarray]
     """Returns at which samples of a motion it does so."""
+    ground: Colour
+    """Ground of the note, and of the times in the charts at which it is shown."""
+
+
+def _slips(motion: Trajectory) -> np.ndarray:
+    """Return at which samples a can slips with more than a twentieth of its speed."""
+    slip_rate = motion.u_dot - motion.scene.can.radius * motion.roll_dot
+    return np.abs(slip_rate) > np.abs(motion.u_dot) / 20
 
 
 def _hesitates(motion: Trajectory) -> np.ndarray:
@@ -142,43 +150,56 @@ def _hesitates(motion: Trajectory) -> np.ndarray:
 
 NOTES = {
     "flies": Note(
-        "its {load} pulls it up: it flies, up to {lift:.0f} mm high",
+        "the {body} flies, up to {lift:.0f} mm high",
         lambda motion: motion.lift > 0.02 * motion.scene.can.radius,
+        ground=(0.85, 0.95, 0.80),
     ),
     "heavy": Note(
         "the {load} below presses the {body} down",
         lambda motion: mean_forces(motion).normal > 1.8,
+        ground=(1.0, 0.85, 0.76),
     ),
     "light": Note(
         "the {load} pulls up: the {body} hardly presses",
         lambda motion: mean_forces(motion).normal < 0.4,
+        ground=(0.80, 0.90, 1.0),
     ),
-    "hesitates": Note("the {load} is uphill: the {body} hesitates", _hesitates),
+    "slips": Note("the {body} slips", _slips, ground=(0.92, 0.85, 0.97)),
+    "hesitates": Note(
+        "the {load} is uphill: the {body} hesitates", _hesitates, ground=(1.0, 0.92, 0.62)
+    ),
 }
 """All notes by name. Forces are in weights of can and load. Where several notes of a film hold, the
 one that the film names first is shown."""
 
 Spans = list[tuple[float, float]]
 """From when to when [s] something holds."""
-GROUNDS = ((1.0, 0.92, 0.62), (0.80, 0.90, 1.0), (0.85, 0.95, 0.80))
-"""Grounds of a film's first, second and third note, and of the times in its charts."""
 
 
-def note_spans(motion: Trajectory, names: Sequence[str]) -> dict[str, Spans]:
-    """Return from when to when [s] notes are shown, by their words.
+class TimedNote(NamedTuple):
+    """A note of a film, and when it is shown."""
+
+    words: str
+    spans: Spans
+    ground: Colour
+
+
+def timed_notes(motion: Trajectory, names: Sequence[str]) -> list[TimedNote]:
+    """Return the notes of these names with the times at which they are shown.
 
     A note is shown while it holds and none before it does.
     """
     called = scene_names(motion.scene)
     lift = 1e3 * motion.lift.max()
-    spans: dict[str, Spans] = {}
+    notes = []
     taken = np.zeros(len(motion.time), bool)
     for name in names:
-        words = NOTES[name].words.format(body=called.body, load=called.load, lift=lift)
-        holds = NOTES[name].holds(motion)
-        spans[words] = _spans(motion.time, holds & ~taken)
+        note = NOTES[name]
+        words = note.words.format(body=called.body, load=called.load, lift=lift)
+        holds = note.holds(motion)
+        notes.append(TimedNote(words, _spans(motion.time, holds & ~taken), note.ground))
         taken |= holds
-    return spans
+    return notes
 
 
 def _spans(time: np.ndarray, holds: np.ndarray) -> Spans:
@@ -200,12 +221,12 @@ def _spans(time: np.ndarray, holds: np.ndarray) -> Spans:
     return spans
 
 
-def draw_note(sheet: Sheet, notes: Mapping[str, Spans], time: float, top: int) -> None:
-    """Write the first of some notes that holds at a `time` [s] below a row `top`."""
-    for (words, spans), ground in zip(notes.items(), GROUNDS, strict=False):
-        if any(first <= time <= last for first, last in spans):
+def draw_note(sheet: Sheet, notes: Sequence[TimedNote], time: float, top: int) -> None:
+    """Write the first of some notes that is shown at a `time` [s] below a row `top`."""
+    for note in notes:
+        if any(first <= time <= last for first, last in note.spans):
             place = np.array([_MARGIN, NOTE / 2]) * sheet.unit + [0, top]
-            sheet.plate(place, [words], INK, (0, 0.5), ground=ground)
+            sheet.plate(place, [note.words], INK, (0, 0.5), ground=note.ground)
             return
 
 

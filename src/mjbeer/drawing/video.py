@@ -226,8 +226,9 @@ class FilmJob:
         """Write the film, and return its still picture as WebP."""
         plan = self.film.plan()
         write(plan, self.path, self.width, self.height, self.fps)
-        # Not the first picture by default: at the start nothing has happened yet.
-        still = self.film.still or (2 * plan.start + plan.end) / 3
+        still = self.film.still
+        if still is None:  # not the first picture: at the start nothing has happened yet
+            still = (2 * plan.start + plan.end) / 3
         (picture,) = plan.draw(np.array([still]), self.width, self.height)
         file = io.BytesIO()
         Image.fromarray(picture).save(file, "WEBP", quality=70)

@@ -23,6 +23,9 @@ CONFIRMED = "confirmed"
 CORRECTED = "confirmed after correction"
 LIMIT = "limit of validity"
 """The verdicts on a claim that passes."""
+_EXPECTED_WITHIN = 0.05
+"""Largest relative difference between the error of a wrong form and the expected one, which has two
+digits."""
 MISPRINT = "misprint"
 APPROXIMATION = "approximation"
 CONSEQUENCE = "consequence"
@@ -191,6 +194,53 @@ class Misprint:
         return re.sub(r"<([^|>]*)\|([^>]*)>", marked, self.latex)
 
 
+class PrintedError(NamedTuple):
+    """The error of a misprint, or of an equation beyond its limit."""
+
+    measured: float
+    expected: float
+    """The error that it must have; it has two digits."""
+
+    @property
+    def is_as_expected(self) -> bool:
+        """Whether the error is the expected one. NaN is not."""
+        return abs(self.measured / self.expected - 1) <= _EXPECTED_WITHIN
+
+
+@dataclass(frozen=True, kw_only=True)
+class ClaimResult(Result):
+    """The error of a claim's right equation, with the verdict on the paper."""
+
+    verdict: str
+    """The verdict on the paper if the claim passes."""
+    printed: PrintedError | None = None
+    """The error of what the paper prints, where that is wrong; or beyond the limit."""
+
+    @property
+    def passed(self) -> bool:
+        """Whether the error is within its bound, and the wrong form's error as expected."""
+        return super().passed and (self.printed is None or self.printed.is_as_expected)
+
+    def fields(self) -> dict[str, Any]:
+        """Return all fields by their names; verdict and printed error are among the `values`."""
+        fields = super().fields()
+        del fields["verdict"]
+        del fields["printed"]
+        values: dict[str, Any] = {"verdict": self.verdict}
+        if self.printed is not None:
+            values["printed"] = self.printed.measured
+            values["expected_error"] = self.printed.expected
+        return fields | {"values": values}
+
+    def summary_line(self) -> str:
+        """Return the result in a line, as for a list of failures."""
+        line = super().summary_line()
+        if self.printed is not None:
+            measured = f"{self.printed.measured:.2g}"
+            line += f"; as printed {measured}, expected {self.printed.expected:.2g}"
+        return line
+
+
 @dataclass(frozen=True)
 class Claim:
     """An equation or statement of the paper that is measured.
@@ -233,22 +283,23 @@ class Claim:
         scale = value(self.scale, observed) if self.scale else None
         return relative_residual(terms(equation, observed), scale)
 
-    def measure(self) -> Result:
+    def measure(self) -> ClaimResult:
         """Measure the error of the right equation, and of the misprint or beyond the limit."""
         observed = self.witness.observe()
-        values: dict[str, Any] = {"verdict": self.verdict}
+        printed = None
         if self.misprint:
-            values["printed"] = self.error(self.printed, observed)
-            values["expected_error"] = self.misprint.expected_error
+            error = self.error(self.printed, observed)
+            printed = PrintedError(error, self.misprint.expected_error)
         elif self.limit:
-            values["printed"] = self.error(self.residual, self.limit.observe())
-            values["expected_error"] = self.limit.expected_error
-        return Result(
+            error = self.error(self.residual, self.limit.observe())
+            printed = PrintedError(error, self.limit.expected_error)
+        return ClaimResult(
             group=self.equation,
             name=self.quantity,
             by=self.witness.name,
             bound=self.bound.error,
             reason=self.bound.reason,
             error=self.error(self.residual, observed),
-            values=values,
+            verdict=self.verdict,
+            printed=printed,
         )

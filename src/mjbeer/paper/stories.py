@@ -186,7 +186,7 @@ STORIES = (
                 ("normal", "lift"),
                 ("paths", "normal"),
                 "pan",
-                ("flies", "heavy", "light"),
+                ("flies", "heavy", "slips", "light"),
                 facts="let go on top at t = 0, μ = 1",
             ),
         ),

@@ -148,7 +148,7 @@ FILMS: dict[str, Film] = {
         duration=2.3,
         speed=0.25,
         hold=1.5,
-        still=1.4,
+        still=0.0,  # who wins is to be predicted
         caption="Four equal cans race over one metre on an incline of 5 degrees, and each is held "
         "at the finish; below is the near end of each. The can whose beer slides wins: its beer "
         "swings to and fro by 30 degrees but does not turn with the can, so that almost nothing "
@@ -168,7 +168,7 @@ FILMS: dict[str, Film] = {
         facts="¾ full; rough: beyond the model's range",
         speed=1 / 3,
         hold=1.5,
-        still=2.2,
+        still=0.0,
         caption="Predict first, then look. Four equal cans, three quarters full, are let go "
         "together on an incline of 7.1°, each with its surface level; below is the near end of "
         "each. Water hardly rubs against its can, and wins after about 1.3 s; oil follows after "
@@ -239,7 +239,7 @@ FILMS: dict[str, Film] = {
             camera="fixed",
             notes=("flies", "heavy", "light"),
             notes_aside=True,
-            facts="set turning at 1700°/s",
+            facts="1700°/s at first, μ = 0.01",
         ),
     ),
     "carry": Carry(),

@@ -19,7 +19,6 @@ from markupsafe import Markup, escape
 from rich.console import Console
 
 from mjbeer import paper
-from mjbeer.checks.check import Result
 from mjbeer.drawing import opengl
 from mjbeer.drawing.video import PlotJob
 from mjbeer.output import files, jobs
@@ -27,7 +26,7 @@ from mjbeer.output.jobs import Job
 from mjbeer.output.plots import Picture
 from mjbeer.output.terminal import Table
 from mjbeer.paper import stories
-from mjbeer.paper.claim import Claim
+from mjbeer.paper.claim import Claim, ClaimResult
 from mjbeer.report import films
 from mjbeer.studies.benchmark import benchmark_tables, work_precision
 from mjbeer.studies.benchmark.points import CASES, SHIPPED, Benchmark
@@ -73,7 +72,7 @@ class ShownFilm(NamedTuple):
 class _Audit(NamedTuple):
     """The section about the paper's claims."""
 
-    misprints: list[tuple[Result, Claim]]
+    misprints: list[tuple[ClaimResult, Claim]]
     """Each misprint of the paper, as measured."""
     kinds: Counter[str]
     """How many misprints there are of each kind."""

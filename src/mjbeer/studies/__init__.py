@@ -1,1 +1,3 @@
-"""Studies of the models, which share the files here; no study imports another."""
+"""Studies of the models. No study imports another; files here, such as `study` and `can_test`, hold
+what several of them share.
+"""

@@ -1,73 +1,72 @@
-"""The two cases of the can test, and MuJoCo's own bodies that roll through them.
+"""The can test: two motions that theory knows to rounding, and how far another one is from them.
 
-The bodies are free in space and touch the incline by a contact, as anybody would model a wheel: no
-file of mjbeer's is used.
+The studies of engines, of MuJoCo's contact and of prisms roll their bodies through these cases.
 """
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-import mujoco
 import numpy as np
 
-from mjbeer.theory.can import LENGTH, RADIUS, Can, Load
+from mjbeer.theory.can import RADIUS, Can, Load
 from mjbeer.theory.scene import Scene
-from mjbeer.theory.trajectory import exact
+from mjbeer.theory.trajectory import Trajectory, exact
 
 DURATION = 2.0
 """Length of the motions [s]."""
-EVERY = 1e-3
-"""Time between two samples [s]."""
-DEPTH = 1e-9
-"""How deep a body starts in the incline, in radii: by rounding, one end of a can does not touch at
-a depth of zero."""
 _MASS = 0.2
 """Mass of the can with its load [kg]."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Case:
     """A motion that theory knows to rounding."""
 
     name: str
+    about: str
+    """The case in a few words."""
     scene: Scene
     phi0: float
-    """[rad]"""
+    """phi at the start [rad]."""
     phi_dot0: float
-    """[rad/s]"""
+    """Its rate [rad/s]."""
+
+    def truth(self, time: np.ndarray, aside: float = 0.0) -> Trajectory:
+        """Return the exact motion at some times [s], from a start so far `aside` [rad]."""
+        return exact(self.scene, time, self.phi0 + aside, self.phi_dot0)
 
 
-def _case(name: str, offset: float, phi0: float, phi_dot0: float) -> Case:
-    """Return a case with the centre of mass `offset` [m] below the axis.
+def _frozen(offset: float) -> Scene:
+    """Return a can without mass, whose frozen load has its centre of mass `offset` [m] off axis.
 
-    The inertia about the axis is that of a full cylinder, and of half a one: m a^2/2.
+    About the axis the load has the inertia of a full or of a half cylinder, m a^2/2.
     """
     load = Load(_MASS, offset, _MASS * (RADIUS**2 / 2 - offset**2))
-    return Case(name, Scene(Can.massless(), load, attachment="frozen"), phi0, phi_dot0)
+    return Scene(Can.massless(), load, attachment="frozen")
 
 
-ROCK = _case("rock", 4 * RADIUS / (3 * math.pi), 1.0, 0.5)
-"""Half a cylinder, frozen in a can without mass, rocks."""
-ROLL = _case("roll", 0.05 * RADIUS, 0.0, 0.0)
-"""A cylinder whose centre of mass is a little off its axis rolls down from rest, ten turns."""
-CASES = (ROCK, ROLL)
-
-
-class Motion(NamedTuple):
-    """Samples of a motion, the start included."""
-
-    time: np.ndarray
-    """[s]"""
-    phi: np.ndarray
-    """[rad], without jumps of whole turns."""
-    u: np.ndarray
-    """Position of the axis along the incline [m]."""
+ROCK = Case(
+    name="rock",
+    about="a half-full can of ice rocks, from 1 rad at 0.5 rad/s",
+    scene=_frozen(4 * RADIUS / (3 * math.pi)),
+    phi0=1.0,
+    phi_dot0=0.5,
+)
+ROLL = Case(
+    name="roll",
+    about="a slightly eccentric full can rolls down, from rest",
+    scene=_frozen(0.05 * RADIUS),
+    phi0=0.0,
+    phi_dot0=0.0,
+)
+"""It turns ten times."""
+CASES = {case.name: case for case in (ROCK, ROLL)}
+"""Both cases by their names."""
 
 
 class Errors(NamedTuple):
-    """The largest errors of a motion."""
+    """The largest errors of a motion over its samples."""
 
     phi: float
     """[rad]"""
@@ -80,99 +79,8 @@ class Errors(NamedTuple):
         return max(self)
 
 
-_MJCF = """
-<mujoco>
-  <option timestep="{timestep!r}" gravity="{along!r} 0 {across!r}" {option}/>
-  <default><geom friction="1 0.005 0.0001"/></default>
-  {asset}
-  <worldbody>
-    <geom type="plane" size="200 20 1" {floor}/>
-    <body pos="0 0 {radius!r}">
-      <freejoint/>
-      <inertial pos="0 0 {below!r}" mass="{mass!r}" diaginertia="{across_axis!r} {inertia!r} {across_axis!r}"/>
-      <geom {shape} {contact}/>
-    </body>
-  </worldbody>
-</mujoco>
-"""  # noqa: E501 - a line of MJCF
-
-
-def free_body(
-    case: Case,
-    timestep: float,
-    option: str = 'integrator="RK4"',
-    contact: str = "",
-    edges: Sequence[float] = (),
-    floor: str | None = None,
-) -> mujoco.MjModel:
-    """Return MuJoCo's model of a case: gravity is inclined, and the incline lies level.
-
-    `option` and `contact` are attributes, of `<option>` and of both geoms; `floor` are those of the
-    incline if they differ. The body is a cylinder, or if there are `edges` a mesh: a prism with an
-    edge at each of these angles from the downward direction towards +x [rad].
-    """
-    scene = case.scene
-    can = scene.can
-    load = scene.load
-    shape = f'type="cylinder" size="{can.radius!r} {can.length / 2!r}" euler="90 0 0"'
-    asset = ""
-    if len(edges):
-        corners = []
-        for y in (-LENGTH / 2, LENGTH / 2):
-            for angle in edges:
-                x = can.radius * math.sin(angle)
-                z = -can.radius * math.cos(angle)
-                corners.append(f"{x:.15g} {y!r} {z:.15g}")
-        asset = f'<asset><mesh name="prism" vertex="{" ".join(corners)}"/></asset>'
-        shape = 'type="mesh" mesh="prism"'
-    text = _MJCF.format(
-        timestep=timestep,
-        along=scene.gravity * math.sin(scene.incline),
-        across=-scene.gravity * math.cos(scene.incline),
-        option=option,
-        contact=contact,
-        floor=contact if floor is None else floor,
-        asset=asset,
-        shape=shape,
-        radius=can.radius,
-        below=-load.offset,
-        mass=scene.mass,
-        inertia=load.inertia,
-        across_axis=scene.mass * (3 * can.radius**2 + can.length**2) / 12,
-    )
-    return mujoco.MjModel.from_xml_string(text)
-
-
-def start(case: Case, model: mujoco.MjModel) -> mujoco.MjData:
-    """Return the state at the start: the can touches the incline and rolls without slip."""
-    radius = case.scene.can.radius
-    half = case.phi0 / 2
-    data = mujoco.MjData(model)
-    height = radius * (1 - DEPTH)
-    data.qpos[:] = [radius * case.phi0, 0, height, math.cos(half), 0, math.sin(half), 0]
-    data.qvel[:] = [radius * case.phi_dot0, 0, 0, 0, case.phi_dot0, 0]
-    return data
-
-
-def run(case: Case, model: mujoco.MjModel, duration: float = DURATION) -> Motion:
-    """Return what MuJoCo makes of a case in a `duration` [s]."""
-    data = start(case, model)
-    samples = round(duration / EVERY)
-    steps = round(EVERY / model.opt.timestep)
-    half = np.empty(samples + 1)
-    u = np.empty(samples + 1)
-    for sample in range(samples + 1):
-        if sample:
-            mujoco.mj_step(model, data, steps)
-        u[sample] = data.qpos[0]
-        half[sample] = math.atan2(data.qpos[5], data.qpos[3])
-    time = np.arange(samples + 1) * steps * model.opt.timestep
-    return Motion(time, 2 * np.unwrap(half, period=math.pi), u)
-
-
-def errors(case: Case, motion: Motion) -> Errors:
-    """Return the errors of a motion against exact theory."""
-    radius = case.scene.can.radius
-    true = exact(case.scene, motion.time, case.phi0, case.phi_dot0)
-    of_phi = float(np.abs(motion.phi - true.phi).max())
-    return Errors(of_phi, float(np.abs(motion.u - true.u).max()) / radius)
+def errors(truth: Trajectory, phi: np.ndarray, u: np.ndarray) -> Errors:
+    """Return how far phi [rad] and u [m] are from an exact motion, at worst over its samples."""
+    of_phi = float(np.abs(phi - truth.phi).max())
+    of_u = float(np.abs(u - truth.u).max())
+    return Errors(of_phi, of_u / truth.scene.can.radius)

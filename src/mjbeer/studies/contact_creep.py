@@ -16,10 +16,11 @@ import mujoco
 import numpy as np
 
 from mjbeer.model.build import build
+from mjbeer.output.numbers import number
 from mjbeer.output.terminal import Table
-from mjbeer.studies import can_test, stored_tables
-from mjbeer.studies.can_test import Case, Errors, Motion
-from mjbeer.studies.engines.engine_tables import number
+from mjbeer.studies import mujoco_bodies, stored_tables
+from mjbeer.studies.can_test import CASES, ROLL, Case, Errors
+from mjbeer.studies.mujoco_bodies import Positions
 from mjbeer.theory import soft_contact
 from mjbeer.theory.paper_scenes import frozen
 from mjbeer.theory.scene import Scene
@@ -82,8 +83,10 @@ class Setting:
             f'solimp="{surface!r} {contact.impedance_at_width!r} {contact.width!r}"'
         )
         if self.wheel is None:
-            return can_test.free_body(case, timestep, option, attributes)
-        return can_test.free_body(case, timestep, option, f"{attributes} {self.wheel}", floor="")
+            return mujoco_bodies.free_body(case, timestep, option, attributes)
+        return mujoco_bodies.free_body(
+            case, timestep, option, f"{attributes} {self.wheel}", floor=""
+        )
 
 
 DEFAULT = Setting("MuJoCo's default")
@@ -131,7 +134,7 @@ def measure(settings: Sequence[Setting] = SETTINGS) -> list[Row]:
     rows = []
     for setting, cost in zip(settings, costs, strict=True):
         errors: dict[str, list[Errors]] = {}
-        for case in can_test.CASES:
+        for case in CASES.values():
             errors[case.name] = [_errors(setting, case, timestep) for timestep in TIMESTEPS]
         rows.append(Row(setting, errors["rock"], errors["roll"], cost))
     return rows
@@ -139,8 +142,8 @@ def measure(settings: Sequence[Setting] = SETTINGS) -> list[Row]:
 
 def _errors(setting: Setting, case: Case, timestep: float) -> Errors:
     """Return the errors of MuJoCo's motion."""
-    motion = can_test.run(case, setting.model(case, timestep))
-    return can_test.errors(case, motion)
+    motion = mujoco_bodies.run(case, setting.model(case, timestep))
+    return mujoco_bodies.errors(case, motion)
 
 
 def _costs(settings: Sequence[Setting]) -> list[float]:
@@ -148,22 +151,22 @@ def _costs(settings: Sequence[Setting]) -> list[float]:
 
     Rounds take turns, so that what else the machine does meets all settings alike.
     """
-    models = [setting.model(can_test.ROLL, TIMESTEPS[0]) for setting in settings]
+    models = [setting.model(ROLL, TIMESTEPS[0]) for setting in settings]
     shortest = [math.inf] * len(models)
     for _ in range(ROUNDS):
         for place, model in enumerate(models):
-            data = can_test.start(can_test.ROLL, model)
+            data = mujoco_bodies.start(ROLL, model)
             began = time.process_time()
             mujoco.mj_step(model, data, STEPS_A_ROUND)
             shortest[place] = min(shortest[place], time.process_time() - began)
     return [seconds / shortest[0] for seconds in shortest]
 
 
-def predicted(setting: Setting, case: Case, time: np.ndarray) -> Motion:
+def predicted(setting: Setting, case: Case, time: np.ndarray) -> Positions:
     """Return the motion that theory predicts of a soft contact; no run has a part in it."""
     contact = setting.contact(TIMESTEPS[0])
     motion = soft_contact.roll(case.scene, contact, time, case.phi0, case.phi_dot0)
-    return Motion(time, motion.phi, motion.u)
+    return Positions(time, motion.phi, motion.u)
 
 
 class Rest(NamedTuple):
@@ -225,11 +228,11 @@ def law_table() -> Table:
     """Return what theory predicts beside what MuJoCo does."""
     columns = ("motion, contact", "what", "predicted", "MuJoCo")
     lines = []
-    for case in can_test.CASES:
+    for case in CASES.values():
         for setting in SOFT:
-            motion = can_test.run(case, setting.model(case, TIMESTEPS[1]))
-            measured = can_test.errors(case, motion)
-            theory = can_test.errors(case, predicted(setting, case, motion.time))
+            motion = mujoco_bodies.run(case, setting.model(case, TIMESTEPS[1]))
+            measured = mujoco_bodies.errors(case, motion)
+            theory = mujoco_bodies.errors(case, predicted(setting, case, motion.time))
             name = f"{case.name}, {setting.cone}"
             lines.append((name, "error of u/a [rad]", f"{theory.u:.4f}", f"{measured.u:.4f}"))
             lines.append((name, "error of φ [rad]", f"{theory.phi:.4f}", f"{measured.phi:.4f}"))

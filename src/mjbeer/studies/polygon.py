@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from mjbeer.output.terminal import Table
-from mjbeer.studies import can_test, stored_tables
+from mjbeer.studies import mujoco_bodies, stored_tables
 from mjbeer.studies.can_test import DURATION, ROLL
 from mjbeer.theory import prism
 
@@ -70,8 +70,8 @@ def mujoco_end(
         option += ' cone="elliptic" impratio="100"'
         contact = f'solref="{time_constant!r} 1" solimp="0.9999 0.9999 0.001"'
     edges = prism.regular(facets).tolist()
-    model = can_test.free_body(ROLL, timestep, option, contact, edges)
-    return float(can_test.run(ROLL, model, duration).phi[-1])
+    model = mujoco_bodies.free_body(ROLL, timestep, option, contact, edges)
+    return float(mujoco_bodies.run(ROLL, model, duration).phi[-1])
 
 
 def mujoco_table() -> Table:

@@ -7,9 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mjbeer.output.numbers import number
+from mjbeer.studies.can_test import CASES, ROCK
 from mjbeer.studies.engines import engine_plot, engine_tables, findings
 from mjbeer.studies.engines.results import (
-    CASES,
     FRICTION,
     TIMESTEPS,
     Motion,
@@ -20,7 +21,6 @@ from mjbeer.studies.engines.results import (
 )
 
 RESULTS = Results.load()
-ROCK = CASES["rock"]
 # Another processor computes the exact motion with other last digits, which are 1e-12 of 66 rad.
 RELATIVE = 1e-6
 ABSOLUTE = 1e-9
@@ -45,7 +45,8 @@ def test_every_row_is_what_its_stored_motion_says() -> None:
         if stored.motion is None:
             assert stored.failure, stored.key
             continue
-        errors = judge(CASES[stored.case], stored.motion)
+        found = judge(CASES[stored.case], stored.motion)
+        judged_anew = (*found.position, found.energy, found.slip, found.lateral)
         written = (
             stored.phi_error,
             stored.u_error,
@@ -53,7 +54,7 @@ def test_every_row_is_what_its_stored_motion_says() -> None:
             stored.slip,
             stored.lateral,
         )
-        assert written == pytest.approx(errors, rel=RELATIVE, abs=ABSOLUTE), stored.key
+        assert written == pytest.approx(judged_anew, rel=RELATIVE, abs=ABSOLUTE), stored.key
         judged += 1
     assert judged >= 0.9 * len(RESULTS.rows)
 
@@ -100,7 +101,7 @@ def test_neither_case_needs_the_friction_that_it_has_or_parts_from_the_incline()
 def test_the_exact_motion_has_no_error(name: str) -> None:
     """But that of rounding: 66 rad, 100 rad/s, and J of energy."""
     errors = judge(CASES[name], exact_motion(name))
-    assert errors.largest == 0
+    assert errors.position.largest == 0
     assert errors.energy < 1e-10
     assert errors.slip < 1e-15
 
@@ -109,20 +110,20 @@ def test_the_judge_tells_an_angle_a_slide_a_drift_and_a_speed() -> None:
     motion = exact_motion("rock")
     radius = ROCK.scene.can.radius
     turned = replace(motion, phi=[*motion.phi[:-1], motion.phi[-1] - 0.01])
-    assert judge(ROCK, turned).phi == pytest.approx(0.01)
+    assert judge(ROCK, turned).position.phi == pytest.approx(0.01)
     slid = judge(ROCK, replace(motion, u=[*motion.u[:-1], motion.u[-1] + 0.01 * radius]))
-    assert (slid.u, slid.slip) == pytest.approx((0.01, 0.01 * radius))
+    assert (slid.position.u, slid.slip) == pytest.approx((0.01, 0.01 * radius))
     assert judge(ROCK, replace(motion, lateral=[*motion.lateral[:-1], -2e-3])).lateral == 2e-3
     fast = [*motion.phi_dot[:-1], 2 * motion.phi_dot[-1]]
     faster = judge(ROCK, replace(motion, phi_dot=fast))
     assert faster.energy > 0.01
-    assert faster.largest == 0
+    assert faster.position.largest == 0
 
 
 def test_what_is_no_motion_is_infinitely_far_and_is_not_stored() -> None:
     motion = exact_motion("rock")
     exploded = replace(motion, u=[math.nan] * 51)
-    assert judge(ROCK, exploded).largest == math.inf
+    assert judge(ROCK, exploded).position.largest == math.inf
     found = row(1e-3, math.inf)
     found.judged(exploded, motion)
     assert found.motion is None
@@ -207,7 +208,7 @@ def test_the_table_marks_what_is_sensitive_and_names_orders_and_floors() -> None
     ],
 )
 def test_a_number_has_two_digits(value: float, text: str) -> None:
-    assert engine_tables.number(value) == text
+    assert number(value) == text
 
 
 def test_an_engine_has_its_first_default_and_its_closest_setting_in_the_main_table() -> None:

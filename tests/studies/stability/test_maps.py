@@ -95,9 +95,9 @@ def small_plan(monkeypatch: pytest.MonkeyPatch) -> None:
     first: dict[str, Check] = {}
     for check in stability_study.plan(True, 0):
         first.setdefault(check.group, check)
-    small_map = partial(stability_maps.measured_values, *PLANS[0], 4)
+    small_map = partial(stability_maps.measured_map, *PLANS[0], 4)
     first["maps"] = replace(first["maps"], measure=small_map)
-    few_runs = partial(stability_study.batch, 0, 4)
+    few_runs = partial(stability_study.measured_batch, 0, 4)
     first["search"] = replace(first["search"], measure=few_runs)
     monkeypatch.setattr(stability_study, "plan", lambda quick, number: list(first.values()))
     monkeypatch.setattr(os, "cpu_count", lambda: 1)

@@ -15,9 +15,11 @@ from typing import NamedTuple
 import pytest
 
 import mjbeer
+from mjbeer.checks.as_json import json_values
 from mjbeer.checks.check import Check, Result
 from mjbeer.exceptions import ParameterError
 from mjbeer.studies.stability import stability_study
+from mjbeer.studies.stability.endings import BatchEndings
 from mjbeer.studies.stability.judge import (
     BOTH,
     REFUSED,
@@ -54,7 +56,7 @@ SAMPLE += [case for case in CASES if len(case.variants) == 1 and case not in SAM
 
 def test_no_run_is_wrong_and_silent() -> None:
     if EXAMPLES is None:
-        assert not batch(0, FIXED)["silent"]
+        assert not batch(0, FIXED).silent
         return
     results = list(run_checks(random_checks(int(EXAMPLES), secrets.randbelow(10**9)), None))
     for table in stability_study.search_tables(totals(results), results):
@@ -69,9 +71,9 @@ def test_a_sample_of_the_known_cases_ends_as_it_must(
     """A motion that no number of steps makes smooth is refused after fewer of them than usually."""
     monkeypatch.setattr("mjbeer.simulation.solve.EVALUATIONS", 500_000)
     found = try_case(case)
-    assert found["runs"]
-    assert [run for run in found["runs"] if not run["as it must"]] == []
-    assert found["error"] == 0
+    assert found.runs
+    assert [run for run in found.runs if not run.as_it_must] == []
+    assert found.wrong == 0
 
 
 def test_what_must_be_is_what_is_compared(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -87,10 +89,10 @@ def test_what_must_be_is_what_is_compared(monkeypatch: pytest.MonkeyPatch) -> No
         Variant("d", good, 1e-20),
     )
     found = try_case(KnownCase("name", "why", (*tried, Variant("e", bad, 1e-2))))
-    assert [run["as it must"] for run in found["runs"]] == [True, True, True, False, False]
-    assert (found["error"], found["why"]) == (2, "why")
+    assert [run.as_it_must for run in found.runs] == [True, True, True, False, False]
+    assert (found.wrong, found.why) == (2, "why")
     monkeypatch.setattr(stability_study, "supported", lambda *_: False)
-    assert try_case(KnownCase("name", "why", tried[1:2]))["error"] == 1
+    assert try_case(KnownCase("name", "why", tried[1:2])).wrong == 1
 
 
 class Span(NamedTuple):
@@ -189,7 +191,7 @@ def test_a_batch_counts_what_the_domain_refuses(monkeypatch: pytest.MonkeyPatch)
         stability_study, "random_trial", lambda number: Trial(mjbeer.sliding(1.5 + number), 1.0)
     )
     monkeypatch.delattr(stability_study, "judge")
-    assert batch(7, 3) == {"error": 0, "kinds": {"outside the domain": {REFUSED: 3}}, "silent": []}
+    assert batch(7, 3) == BatchEndings(kinds={"outside the domain": {REFUSED: 3}}, silent=[])
 
 
 def test_a_batch_counts_and_keeps_what_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -207,10 +209,10 @@ def test_a_batch_counts_and_keeps_what_is_wrong(monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr(stability_study, "judge", lambda _: next(outcomes))
     monkeypatch.setattr(stability_study, "random_trial", lambda _: Trial(mjbeer.frozen(), 1.0))
     found = batch(SIZE, len(ends))
-    assert [run["number"] - SIZE for run in found["silent"]] == [5]
-    assert found["silent"][0]["trial"].startswith("Trial(scene=")
-    assert found["error"] == 1
-    both = [Result(RANDOM, name, values=found) for name in "ab"]
+    assert [run.number - SIZE for run in found.silent] == [5]
+    assert found.silent[0].trial.startswith("Trial(scene=")
+    assert BatchEndings.from_json(json_values(found.as_json())) == found
+    both = [Result(RANDOM, name, values=found.as_json()) for name in "ab"]
     all_of = totals(both).kinds["all"]
     assert all_of == {
         RIGHT: 6,

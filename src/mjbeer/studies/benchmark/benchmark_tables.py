@@ -250,10 +250,11 @@ def cheapest(study: Benchmark, case: str) -> Table:
     return Table(title, ("error at most", *rollings), rows)
 
 
-def convergence(study: Benchmark, case: str) -> Table:
+def convergence(study: Benchmark, case: str, step_ratio: int = 2) -> Table:
     """Return the errors of constraints at timesteps that are halved, with the order in brackets.
 
-    The order is the power of the timestep by which the error has fallen since twice the timestep.
+    The order is the power of the timestep by which the error has fallen since a timestep
+    `step_ratio` times as long.
     """
     of_case = study.of(case)
     curves = [curve for curve in _CONTACT if any(point.curve == curve for point in of_case)]
@@ -267,13 +268,13 @@ def convergence(study: Benchmark, case: str) -> Table:
         cells = []
         for curve in curves:
             error = errors[curve].get(step)
-            before = errors[curve].get(2 * step)
+            before = errors[curve].get(step_ratio * step)
             if error is None:
                 cells.append("-")
             elif before is None:
                 cells.append(f"{error:.1e}")
             else:
-                order = round(math.log(before / error, 2), 1) + 0.0  # and no -0.0
+                order = round(math.log(before / error, step_ratio), 1) + 0.0  # and no -0.0
                 cells.append(f"{error:.1e} ({order:.1f})")
         rows.append((milliseconds(step), *cells))
     title = f"{case}: largest error [rad] by timestep, with the order of its convergence"

@@ -8,15 +8,16 @@ from typing import NamedTuple
 
 from matplotlib.axes import Axes
 
+from mjbeer.output.numbers import number
 from mjbeer.output.plots import COLOURS, GREY, Picture, chart
+from mjbeer.studies.can_test import CASES
 from mjbeer.studies.engines.engine_tables import (
     COARSE,
     closest_defaults,
-    number,
     order_cell,
     worst_error,
 )
-from mjbeer.studies.engines.results import CASES, EQUATION, CurveKey, Results, Row, order_of
+from mjbeer.studies.engines.results import EQUATION, CurveKey, Results, Row, order_of
 
 
 class _Style(NamedTuple):

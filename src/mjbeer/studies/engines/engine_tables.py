@@ -1,12 +1,12 @@
 """The tables of the can test, for the documents and for the page of the report."""
 
-import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from mjbeer.output.numbers import number
 from mjbeer.output.terminal import Table
+from mjbeer.studies.can_test import CASES
 from mjbeer.studies.engines.results import (
-    CASES,
     EQUATION,
     CurveKey,
     Engine,
@@ -22,8 +22,6 @@ FINE = 1e-4
 """The shorter timestep [s] of the tables."""
 SENSITIVE_MARK = "*"
 """Stands behind the error of a row that a start aside changes."""
-_PLAIN = 1e-4
-"""The least number that is written without a power of ten."""
 
 
 class Way(NamedTuple):
@@ -127,20 +125,6 @@ def errors(results: Results, shown: Sequence[Way] = ()) -> Table:
         cells.append(time_cell(row_at(curves["roll"][way.key("roll")], COARSE)))
         lines.append(tuple(cells))
     return Table("Largest error of φ and u/a in 2 s [rad]", tuple(columns), lines, left=(0, 1, 2))
-
-
-def number(value: float) -> str:
-    """Return a number with two digits as people write it: 0.087, 22, 3.4e-5; "none" if infinite."""
-    if value == 0:
-        return "0"
-    if not math.isfinite(value):
-        return "none"
-    if value < _PLAIN:
-        digits, power = f"{value:.1e}".split("e")
-        return f"{digits}e{int(power)}"
-    rounded = float(f"{value:.1e}")
-    decimals = max(0, 1 - math.floor(math.log10(rounded)))
-    return f"{rounded:,.{decimals}f}"
 
 
 def error_cell(row: Row) -> str:

@@ -5,18 +5,19 @@ Two numbers that stand together are those of the two cases, rock first.
 
 import numpy as np
 
+from mjbeer.output.numbers import number
+from mjbeer.studies.can_test import CASES, DURATION
 from mjbeer.studies.engines.engine_tables import (
     COARSE,
     FINE,
     Way,
     closest,
     closest_defaults,
-    number,
     order_cell,
     row_at,
     worst_error,
 )
-from mjbeer.studies.engines.results import CASES, DURATION, CurveKey, Results, Row, order_of
+from mjbeer.studies.engines.results import CurveKey, Results, Row, order_of
 
 _DEFAULT = Way("MuJoCo", "cylinder", "default")
 _STIFF = Way("MuJoCo", "cylinder", "stiff contact, RK4")

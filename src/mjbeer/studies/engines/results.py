@@ -14,18 +14,16 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mjbeer.checks.as_json import to_json
-from mjbeer.theory.can import Can, Load
+from mjbeer.studies import can_test
+from mjbeer.studies.can_test import CASES, DURATION, Case, Errors
 from mjbeer.theory.equations import kinetic_energy
-from mjbeer.theory.scene import Scene
-from mjbeer.theory.trajectory import Trajectory, exact
+from mjbeer.theory.trajectory import Trajectory
 
 _HERE = pathlib.Path(__file__).parent
 _OF_WHEEL = _HERE / "results.json"
 _OF_CHECKOUT = _HERE.parents[3] / "engines" / "results.json"
 RESULTS = _OF_WHEEL if _OF_WHEEL.is_file() else _OF_CHECKOUT
 """Where the results are: in a wheel, or in a checkout."""
-DURATION = 2.0
-"""Length of a motion [s]."""
 FRICTION = 1.0
 """The coefficient of friction: neither case needs more than 0.39."""
 ASIDE = 1e-9
@@ -45,77 +43,27 @@ _LARGE = 1.0
 _HELPS = 0.25
 """The least share by which the last timestep lowers the error of what converges; with less, the
 error has a floor."""
-_RADIUS = 0.033
-"""Radius of the can [m]."""
-_MASS = 0.2
-"""Mass of the load [kg]."""
 
 
-@dataclass(frozen=True, eq=False)
-class EngineCase:
-    """A can that an engine is to roll."""
-
-    name: str
-    about: str
-    """The case in a few words."""
-    scene: Scene
-    phi0: float
-    """phi at the start [rad]."""
-    phi_dot0: float
-    """Its rate [rad/s]."""
-
-    def question(self) -> dict[str, float]:
-        """Return the case as the engines' files read it: `Case` in engines/common.py."""
-        scene = self.scene
-        can = scene.can
-        load = scene.load
-        return {
-            "radius": can.radius,
-            "length": can.length,
-            "mass": load.mass,
-            "offset": load.offset,
-            "inertia": load.inertia,
-            "cross_inertia": load.mass * (3 * can.radius**2 + can.length**2) / 12,
-            "gravity_x": scene.gravity * math.sin(scene.incline),
-            "gravity_z": -scene.gravity * math.cos(scene.incline),
-            "friction": FRICTION,
-            "phi0": self.phi0,
-            "phi_dot0": self.phi_dot0,
-            "duration": DURATION,
-        }
-
-    def truth(self, time: np.ndarray, aside: float) -> Trajectory:
-        """Return the exact motion at some times [s], from a start so far `aside` [rad]."""
-        return exact(self.scene, time, self.phi0 + aside, self.phi_dot0)
-
-
-def _frozen(offset: float) -> Scene:
-    """Return a can without mass, whose frozen load has its centre of mass `offset` [m] off axis.
-
-    About the axis the load has the inertia of a full or of a half cylinder, m a^2/2.
-    """
-    inertia = _MASS * (_RADIUS**2 / 2 - offset**2)
-    return Scene(Can(_RADIUS), Load(_MASS, offset, inertia), attachment="frozen")
-
-
-_ALL = (
-    EngineCase(
-        "rock",
-        "a half-full can of ice rocks, from 1 rad at 0.5 rad/s",
-        _frozen(4 * _RADIUS / (3 * math.pi)),
-        1.0,
-        0.5,
-    ),
-    EngineCase(
-        "roll",
-        "a slightly eccentric full can rolls down, from rest",
-        _frozen(0.05 * _RADIUS),
-        0.0,
-        0.0,
-    ),
-)
-CASES = {case.name: case for case in _ALL}
-"""All cases."""
+def question(case: Case) -> dict[str, float]:
+    """Return a case as the engines' files read it: `Case` in engines/common.py."""
+    scene = case.scene
+    can = scene.can
+    load = scene.load
+    return {
+        "radius": can.radius,
+        "length": can.length,
+        "mass": load.mass,
+        "offset": load.offset,
+        "inertia": load.inertia,
+        "cross_inertia": load.mass * (3 * can.radius**2 + can.length**2) / 12,
+        "gravity_x": scene.gravity * math.sin(scene.incline),
+        "gravity_z": -scene.gravity * math.cos(scene.incline),
+        "friction": FRICTION,
+        "phi0": case.phi0,
+        "phi_dot0": case.phi_dot0,
+        "duration": DURATION,
+    }
 
 
 @dataclass
@@ -138,12 +86,10 @@ class Motion:
         return Motion(**lists)
 
 
-class Errors(NamedTuple):
-    """How far a motion is from exact theory, at worst over its samples."""
+class Judgement(NamedTuple):
+    """How far an engine's motion is from exact theory, at worst over its samples."""
 
-    phi: float  # [rad]
-    u: float
-    """Error of u/a [rad]."""
+    position: Errors
     energy: float
     """Largest change of the energy, divided by the largest kinetic energy of the exact motion."""
     slip: float
@@ -151,24 +97,18 @@ class Errors(NamedTuple):
     lateral: float
     """Largest distance from its lane [m]."""
 
-    @property
-    def largest(self) -> float:
-        """Return the larger error of phi and u/a [rad]."""
-        return max(self.phi, self.u)
 
-
-def judge(case: EngineCase, motion: Motion, aside: float = 0.0) -> Errors:
+def judge(case: Case, motion: Motion, aside: float = 0.0) -> Judgement:
     """Return how far a motion is from exact theory; infinitely far if it is no motion.
 
     It began so far `aside` of the case's start [rad].
     """
     numbers = np.array([motion.phi, motion.u, motion.phi_dot, motion.u_dot, motion.lateral])
     if not np.isfinite(numbers).all():
-        return Errors(*(math.inf,) * 5)
+        return Judgement(Errors(math.inf, math.inf), math.inf, math.inf, math.inf)
     time = np.array(motion.time)
     phi, u, phi_dot, u_dot, lateral = numbers
     truth = case.truth(time, aside)
-    radius = case.scene.can.radius
     still = np.zeros_like(time)
     found = Trajectory(
         scene=case.scene,
@@ -185,9 +125,8 @@ def judge(case: EngineCase, motion: Motion, aside: float = 0.0) -> Errors:
         lift_dot=still,
     )
     largest = kinetic_energy(case.scene, truth).max()
-    return Errors(
-        phi=float(np.abs(phi - truth.phi).max()),
-        u=float(np.abs(u - truth.u).max() / radius),
+    return Judgement(
+        position=can_test.errors(truth, phi, u),
         energy=float(np.abs(found.energy - found.energy[0]).max() / largest),
         slip=float(np.abs(found.slip).max()),
         lateral=float(np.abs(lateral).max()),
@@ -257,17 +196,17 @@ class Row:
     def judged(self, motion: Motion, aside: Motion) -> None:
         """Take a motion, and the errors of it and of the one that began aside."""
         case = CASES[self.case]
-        errors = judge(case, motion.rounded())
-        if not math.isfinite(errors.largest):
+        judgement = judge(case, motion.rounded())
+        if not math.isfinite(judgement.position.largest):
             self.failure = "the motion explodes"
             return
         self.motion = motion.rounded()
-        self.phi_error = errors.phi
-        self.u_error = errors.u
-        self.energy_error = errors.energy
-        self.slip = errors.slip
-        self.lateral = errors.lateral
-        self.aside_error = judge(case, aside, ASIDE).largest
+        self.phi_error = judgement.position.phi
+        self.u_error = judgement.position.u
+        self.energy_error = judgement.energy
+        self.slip = judgement.slip
+        self.lateral = judgement.lateral
+        self.aside_error = judge(case, aside, ASIDE).position.largest
 
 
 class Order(NamedTuple):

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import mujoco
 import numpy as np
 
-from mjbeer.checks.check import Check, Result
+from mjbeer.checks.check import Check, Measured, Result
 from mjbeer.exceptions import DivergenceError
 from mjbeer.integrators.dop853 import DOP853
 from mjbeer.integrators.dynamics import Dynamics
@@ -292,9 +292,9 @@ def checks(cells: int = CELLS) -> list[Check]:
     reason = "bisection to 1 %, and an instability has to grow before it is seen"
     listed = []
     for family, integrator in PLANS:
-        values = partial(measured_values, family, integrator, cells)
+        measured = partial(measured_map, family, integrator, cells)
         name = _name(family, integrator)
-        listed.append(Check(MAPS, name, values, "", _AGREEMENT, "relative", reason))
+        listed.append(Check(MAPS, name, measured, "", _AGREEMENT, "relative", reason))
     return listed
 
 
@@ -303,12 +303,13 @@ def _name(family: str, integrator: str) -> str:
     return f"{family}, {integrator}"
 
 
-def measured_values(family: str, integrator: Integrator, cells: int) -> dict[str, Any]:
-    """Return a map as the values of a `Check`."""
-    values = asdict(measure(family, integrator, cells))
-    values["error"] = values.pop("worst")
+def measured_map(family: str, integrator: Integrator, cells: int) -> Measured:
+    """Return a map as a check measures it: its worst border, and the rest as values."""
+    found = measure(family, integrator, cells)
+    values = asdict(found)
+    del values["worst"]
     del values["name"]
-    return values
+    return Measured(found.worst, values)
 
 
 def measure(family: str, integrator: Integrator, cells: int) -> StabilityMap:

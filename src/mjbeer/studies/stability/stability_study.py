@@ -13,19 +13,20 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
 from decimal import ROUND_CEILING, Context
 from functools import partial
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from rich.console import Console
 from scipy.stats import binomtest
 
 from mjbeer.checks.as_json import document
-from mjbeer.checks.check import Check, Result
+from mjbeer.checks.check import Check, Measured, Result
 from mjbeer.exceptions import ParameterError
 from mjbeer.model.setting import supported
 from mjbeer.output import files
 from mjbeer.output.terminal import Table
 from mjbeer.studies import study as studies
 from mjbeer.studies.stability import map_plots, stability_maps
+from mjbeer.studies.stability.endings import BatchEndings, KnownEndings, KnownRun, SilentRun
 from mjbeer.studies.stability.judge import (
     JUDGES,
     REFUSED,
@@ -98,9 +99,9 @@ def _known_checks() -> list[Check]:
     """Return a check for each known case."""
     checks = []
     for case in cases():
-        ends = partial(try_case, case)
+        measure = partial(_measured_case, case)
         reason = "each ends as it must"
-        checks.append(Check(KNOWN, case.name, ends, bound=0, unit="runs", reason=reason))
+        checks.append(Check(KNOWN, case.name, measure, bound=0, unit="runs", reason=reason))
     return checks
 
 
@@ -111,13 +112,25 @@ def random_checks(runs: int, number: int) -> list[Check]:
         name = f"random runs {first} to {first + SIZE - 1}"
         reason = "none is wrong and silent"
         checks.append(
-            Check(RANDOM, name, partial(batch, first), bound=0, unit="runs", reason=reason)
+            Check(RANDOM, name, partial(measured_batch, first), bound=0, unit="runs", reason=reason)
         )
     return checks
 
 
-def try_case(case: KnownCase) -> dict[str, Any]:
-    """Return how the variants of a known case ended; "error" counts those that ended wrongly."""
+def _measured_case(case: KnownCase) -> Measured:
+    """Return how many variants of a known case ended wrongly, and how each ended."""
+    endings = try_case(case)
+    return Measured(endings.wrong, endings.as_json())
+
+
+def measured_batch(first: int, size: int = SIZE) -> Measured:
+    """Return how many random runs from the number `first` on are silent, and how all ended."""
+    endings = batch(first, size)
+    return Measured(len(endings.silent), endings.as_json())
+
+
+def try_case(case: KnownCase) -> KnownEndings:
+    """Return how the variants of a known case ended."""
     runs = []
     for variant in case.variants:
         outcome = judge(variant.trial)
@@ -125,16 +138,14 @@ def try_case(case: KnownCase) -> dict[str, Any]:
             as_it_must = outcome.verdict != UNDETECTED_ERROR and outcome.error <= variant.within
         else:
             as_it_must = outcome.verdict == REFUSED
-        runs.append({"setting": variant.setting, "as it must": as_it_must, **asdict(outcome)})
-    wrong = sum(not run["as it must"] for run in runs)
-    return {"error": wrong, "why": case.why, "runs": runs}
+        runs.append(KnownRun(variant.setting, as_it_must, outcome))
+    return KnownEndings(case.why, runs)
 
 
-def batch(first: int, size: int = SIZE) -> dict[str, Any]:
+def batch(first: int, size: int = SIZE) -> BatchEndings:
     """Return how the random runs from the number `first` on ended.
 
-    "error" counts the silent runs, and "silent" describes each of them. "kinds" has the counts of
-    verdicts and judges by kind of model; trials `OUTSIDE` the domain count as refused.
+    Trials `OUTSIDE` the domain count as refused.
     """
     kinds: dict[str, Counter[str]] = {}
     silent = []
@@ -148,10 +159,9 @@ def batch(first: int, size: int = SIZE) -> dict[str, Any]:
         kinds.setdefault(trial.kind, Counter()).update(_counted(outcome))
         if outcome.verdict == UNDETECTED_ERROR:
             region = REGIONS[number % len(REGIONS)].name
-            run = {"number": number, "region": region, **asdict(outcome), "trial": repr(trial)}
-            silent.append(run)
+            silent.append(SilentRun(number, region, outcome, repr(trial)))
     counts = {kind: dict(counter) for kind, counter in kinds.items()}
-    return {"error": len(silent), "kinds": counts, "silent": silent}
+    return BatchEndings(counts, silent)
 
 
 def _counted(outcome: Outcome) -> list[str]:
@@ -185,9 +195,10 @@ def totals(results: Iterable[Result]) -> Totals:
     kinds: dict[str, Counter[str]] = {}
     for result in results:
         if result.group == KNOWN:
-            known.update(run["verdict"] for run in result.values["runs"])
+            case = KnownEndings.from_json(result.values)
+            known.update(run.outcome.verdict for run in case.runs)
         elif result.group == RANDOM:
-            for kind, counts in result.values["kinds"].items():
+            for kind, counts in BatchEndings.from_json(result.values).kinds.items():
                 kinds.setdefault(kind, Counter()).update(counts)
     ordered = {kind: dict(kinds[kind]) for kind in sorted(kinds)}
     every = sum(kinds.values(), Counter())
@@ -243,8 +254,10 @@ def _table_of_silent_runs(results: Sequence[Result]) -> Table:
     """Return a table with a row for each silent run."""
     rows = []
     for result in results:
-        for run in result.values.get("silent", ()):
-            rows.append((str(run["number"]), run["region"], f"{run['error']:.1e}", run["trial"]))
+        if result.group != RANDOM:
+            continue
+        for run in BatchEndings.from_json(result.values).silent:
+            rows.append((str(run.number), run.region, f"{run.outcome.error:.1e}", run.trial))
     columns = ("number", "region", "error [rad]", "trial")
     return Table("Silent runs, which must not be", columns, rows, left=(0, 1, 3))
 
@@ -253,22 +266,18 @@ def _table_of_cases(results: Sequence[Result]) -> Table:
     """Return a table with a row for each known case: how its runs ended, and their errors."""
     rows = []
     for result in results:
-        cells = [_ended(result.values["runs"], verdict) for verdict in VERDICTS]
-        rows.append((result.name, *cells, result.values["why"]))
+        case = KnownEndings.from_json(result.values)
+        cells = [_ended(case.runs, verdict) for verdict in VERDICTS]
+        rows.append((result.name, *cells, case.why))
     title = "Known cases: runs, and the largest error [rad]"
     return Table(title, ("case", *VERDICTS, "why it is one"), rows, left=(0, 5))
 
 
-def _ended(runs: Sequence[Mapping[str, Any]], verdict: str) -> str:
-    """Return how many runs ended with a verdict, and the largest of their errors."""
-    errors = []
-    count = 0
-    for run in runs:
-        if run["verdict"] == verdict:
-            count += 1
-            if run["error"] not in (None, math.inf):
-                errors.append(run["error"])
-    return f"{count} ({max(errors):.0e})" if errors else f"{count}"
+def _ended(runs: Sequence[KnownRun], verdict: str) -> str:
+    """Return how many runs ended with a verdict, and the largest of their finite errors."""
+    ended = [run.outcome.error for run in runs if run.outcome.verdict == verdict]
+    errors = [error for error in ended if error != math.inf]
+    return f"{len(ended)} ({max(errors):.0e})" if errors else f"{len(ended)}"
 
 
 def run(folder: pathlib.Path, quick: bool, console: Console) -> Study:

@@ -8,6 +8,7 @@ from mjbeer import paper
 from mjbeer.checks.as_json import to_json
 from mjbeer.checks.check import Check, Result
 from mjbeer.output.terminal import Table, progress_bar
+from mjbeer.paper.claim import CORRECTED, ClaimResult
 from mjbeer.studies.study import FAILED, machine
 from mjbeer.studies.validation import motion_checks, standing_checks, track_checks
 
@@ -18,7 +19,7 @@ class Validation:
 
     results: list[Result]
     """Results of the checks against exact theory."""
-    audit: list[Result]
+    audit: list[ClaimResult]
     """Results of the claims of the paper."""
 
     @property
@@ -35,12 +36,14 @@ class Validation:
 
     @property
     def sentence(self) -> str:
-        """How many checks and how many claims passed."""
+        """How many checks passed, and how many claims came out as expected, and in which way."""
         checks = sum(result.passed for result in self.results)
-        claims = sum(result.passed for result in self.audit)
+        expected = [result for result in self.audit if result.passed]
+        corrected = sum(result.verdict == CORRECTED for result in expected)
         return (
-            f"{checks} of {len(self.results)} checks and "
-            f"{claims} of {len(self.audit)} claims of the paper passed"
+            f"{checks} of {len(self.results)} checks passed, and "
+            f"{len(expected)} of {len(self.audit)} claims of the paper came out as expected "
+            f"({len(expected) - corrected} hold as printed, {corrected} only after a correction)"
         )
 
     def tables(self) -> list[Table]:
@@ -59,8 +62,8 @@ class Validation:
         content = {
             "versions": machine()["versions"],
             "passed": self.passed,
-            "checks": [{**vars(result), "passed": result.passed} for result in self.results],
-            "audit": [{**vars(result), "passed": result.passed} for result in self.audit],
+            "checks": [{**result.fields(), "passed": result.passed} for result in self.results],
+            "audit": [{**result.fields(), "passed": result.passed} for result in self.audit],
         }
         return to_json(content, indent=2)
 
@@ -92,18 +95,16 @@ def validate(console: Console | None) -> Validation:
     return Validation(results, audited)
 
 
-def audit(results: list[Result]) -> Table:
+def audit(results: list[ClaimResult]) -> Table:
     """Return the table of the audit: verdicts, witnesses, and what dominates each error."""
     lines = []
     for result in results:
-        printed = result.values.get("printed")
-        # Only a misprint has two errors: as printed, and as it should be.
+        # Only what is wrong somewhere has two errors: where it is, and as it should be.
         errors = (_error(result), "")
-        if printed is not None:
-            errors = (f"{printed:.2g}", _error(result))
+        if result.printed is not None:
+            errors = (f"{result.printed.measured:.2g}", _error(result))
         bound = f"{result.bound:.1e}" + FAILED[result.passed]
-        verdict = result.values["verdict"]
-        heading = (result.group, result.name, verdict, result.by)
+        heading = (result.group, result.name, result.verdict, result.by)
         lines.append((*heading, *errors, bound, result.reason))
     columns = (
         "equation",
