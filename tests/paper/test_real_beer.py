@@ -118,16 +118,28 @@ def test_a_run_that_ends_before_its_liquid_is_no_lump_has_no_warning(
         assert (reason in str(short.liquid_warnings)) == warned
 
 
-def test_the_page_has_the_amounts_whose_liquid_stays_one_lump() -> None:
-    """12 to 32 mL on 2 degrees; with air 12 and 13 mL, whose cans are then slower than 1/2."""
-    for volume, whole in ((12.0, True), (11.5, False), (32.0, True), (33.0, False)):
-        scene = water_in(volume, INCLINES[0])
-        assert (lump_until(let_go(scene, times_of(scene))) > 1) == whole
-    for volume in (12.0, 13.0):
-        scene = water_in(volume, INCLINES[0], drag=DRAG)
-        run = let_go(scene, times_of(scene))
-        assert over_first_metre(run) < 0.5
-        assert lump_until(run) > 1
+@pytest.mark.parametrize(
+    ("volume", "holds"), [(11.5, False), (12.0, True), (32.0, True), (33.0, False)]
+)
+def test_the_liquid_stays_one_lump_for_a_metre_from_12_to_32_ml(volume: float, holds: bool) -> None:
+    scene = water_in(volume, INCLINES[0])
+
+    run = let_go(scene, times_of(scene))
+
+    assert (lump_until(run) > 1) == holds
+
+
+@pytest.mark.parametrize("volume", [12.0, 13.0])
+def test_with_air_a_can_is_slower_than_half_while_its_liquid_is_one_lump(volume: float) -> None:
+    scene = water_in(volume, INCLINES[0], drag=DRAG)
+
+    run = let_go(scene, times_of(scene))
+
+    assert over_first_metre(run) < 0.5
+    assert lump_until(run) > 1
+
+
+def test_without_air_a_can_is_slower_than_half_up_to_11_ml() -> None:
     assert first_metre(11.0, INCLINES[0]) < 0.5 < first_metre(11.5, INCLINES[0])
 
 
@@ -166,18 +178,50 @@ def test_a_nearly_full_can_is_as_fast_as_a_full_one(
     assert first_metre(400.0, incline) == pytest.approx(full, abs=4e-3)
 
 
-def test_the_page_has_the_frequencies_of_a_half_full_can() -> None:
-    """In hertz, by the paper and as a liquid; in swings and in frames; how far the can rolls."""
-    for can, by_paper, by_liquid in ((Can(), 3.2, 4.8), (CAN, 3.1, 4.5)):
-        paper = sliding(0.0, 0.5, can, LIQUIDS["beer"].density).frequency() / math.tau
-        beer = liquid("beer", 0.0, 0.5, can)
-        found = beer.frequency() / math.tau
-        assert (round(paper, 1), round(found, 1)) == (by_paper, by_liquid)
-    assert (round(60 / found), round(60 / paper)) == (13, 20)
-    assert (round(10 / found, 1), round(10 / paper, 1)) == (2.2, 3.3)
+def hertz_of_solid(can: Can) -> float:
+    """Return the frequency [Hz] by the paper of half a can of beer on level ground."""
+    return sliding(0.0, 0.5, can, LIQUIDS["beer"].density).frequency() / math.tau
+
+
+def hertz_of_liquid(can: Can) -> float:
+    """Return the frequency [Hz] as a liquid of half a can of beer on level ground."""
+    return liquid("beer", 0.0, 0.5, can).frequency() / math.tau
+
+
+@pytest.mark.parametrize(
+    ("can", "by_paper", "as_liquid"),
+    [(Can(), 3.2, 4.8), (CAN, 3.1, 4.5)],
+    ids=["massless", "12 oz"],
+)
+def test_the_page_has_the_frequencies_of_a_half_full_can(
+    can: Can, by_paper: float, as_liquid: float
+) -> None:
+    assert round(hertz_of_solid(can), 1) == by_paper
+    assert round(hertz_of_liquid(can), 1) == as_liquid
+
+
+def test_the_page_has_what_a_film_of_60_pictures_a_second_shows() -> None:
+    """In pictures a swing, and in seconds for ten swings."""
+    solid = hertz_of_solid(CAN)
+    beer = hertz_of_liquid(CAN)
+
+    assert round(60 / beer) == 13
+    assert 19 < 60 / solid < 20
+    assert round(10 / beer, 1) == 2.2
+    assert round(10 / solid, 1) == 3.3
+
+
+def test_the_page_has_how_far_the_can_rolls_in_a_swing() -> None:
+    beer = liquid("beer", 0.0, 0.5, CAN)
+
     arm = beer.load.moment / beer.effective_mass
+
     assert round(1e3 * arm * 2 * SWING, 1) == 3.8
+
+
+def test_the_page_s_program_finds_the_frequency() -> None:
     run = simulate(liquid("beer", incline=0.0, fill=0.5), 1.0, 0.05, tolerance=1e-6)
+
     assert round(run.frequency() / math.tau, 1) == 4.8
 
 
