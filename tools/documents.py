@@ -564,7 +564,7 @@ def metre() -> str:
         "water [mL]",
         "no friction",
         "friction",
-        "(doubled to halved)",
+        "doubled to halved",
         "model holds for",
     )
     lines = []
@@ -575,12 +575,13 @@ def metre() -> str:
         halved = with_water(volume, friction=1 / real_beer.SPREAD)
         doubled = with_water(volume, friction=real_beer.SPREAD)
         until = real_beer.lump_until(usual)
+        mean = f"{real_beer.over_first_metre(usual):.2f}"
         cells = (
             f"{volume:g}",
             f"{none:.2f}",
-            f"{real_beer.over_first_metre(usual):.2f}",
-            f"({real_beer.over_first_metre(doubled):.2f} to "
-            f"{real_beer.over_first_metre(halved):.2f})",
+            mean if until > 1 else f"({mean})",
+            f"{real_beer.over_first_metre(doubled):.2f} to "
+            f"{real_beer.over_first_metre(halved):.2f}",
             "the whole metre" if until > 1 else f"{until:.2f} m",
         )
         lines.append(cells)

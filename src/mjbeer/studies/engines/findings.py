@@ -105,10 +105,12 @@ def answer(results: Results) -> str:
     if not is_as_told:
         raise ValueError("the results are others than those that the answer is written for")
     return (
-        f"At a timestep of 1 ms and at their defaults, {len(defaults)} engines are "
-        f"{number(min(defaults.values()))} to {number(max(defaults.values()))} rad off within 2 s, "
-        "each with the shape that is closest to theory (the larger error of two cases). MuJoCo's "
-        "error is the largest of these, and it does not fall with the timestep: "
+        f"Take for each of {len(defaults)} engines the shape that is closest to theory at its "
+        "defaults. "
+        f"At a timestep of 1 ms they are {number(min(defaults.values()))} to "
+        f"{number(max(defaults.values()))} rad off within 2 s (the larger error of two cases); "
+        "other shapes are further off. MuJoCo's error is the largest of these, and it hardly falls "
+        "with the timestep: "
         f"{read.both(_DEFAULT, FINE)} (rock and roll) remain at 0.1 ms. SAPIEN's cylinder is "
         f"{number(worst_error(results, _PRISM))} rad off, as SAPIEN makes a prism of it. At the "
         "closest of the settings that we tried, MuJoCo's contact is "
